@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -39,6 +40,7 @@ GLASS = "glass"
 @click.option("--surface", metavar="NAME", help="Which surface, where there are several.")
 @click.option("--interface", metavar="NAME", help="Which interface, where there are several: dry, wet, talc.")
 @click.option("--load", metavar="LOAD", help="Which load, where there are several, such as 20N.")
+@click.option("--each", is_flag=True, help="A curve for each compound, surface, interface and load, in one figure.")
 @click.option("--format", "ending", type=click.Choice(FORMATS), default=None, help="By the ending of the file.")
 @click.option(
     "-o", "--out", type=click.Path(dir_okay=False, path_type=Path), default=None,
@@ -53,6 +55,7 @@ def master(
     surface: str | None,
     interface: str | None,
     load: str | None,
+    each: bool,
     ending: str | None,
     out: Path | None,
     as_json: bool,
@@ -64,24 +67,41 @@ def master(
     rest goes to stderr: first the verdict, then Ts with its 95 % interval, the scatter, the maxima with theirs, and the
     shifts between neighbouring temperatures by themselves. Runs in which friction heats the contact are refused.
 
-    Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell.
+    With --each, stdout has a row for each curve instead, and each of Grosch's two rules is compared with the maxima of
+    all curves: of adhesion on glass and of the slower one on an abrasive, of deformation with the faster one.
+
+    Exit code 0: it collapses; 1: it does not, or is refused; 6: these conditions cannot tell. With --each that of the
+    worst curve.
     """
-    from tester.analysis.master_curve.fitted_curve import master_of
     from tester.analysis.master_curve.verdict import Verdict
+    from tester.cli.master_each import curves_of, tell_each, write_each
 
     kind_of_file = _ending(ending, out)
     found = _runs(runs)
     points = [point for one in found for point in one.points]
-    points = _chosen(points, compound, surface, interface, _quantity("--load", load, "N"))
-    name = points[0].compound
-    file = _compound_file(runs[0], name)
-    glass_c = file.model.Tg if file is not None else None
-    made = master_of(points, reference_c, _ts(ts_words, name, glass_c), _rubber(file), glass_c)
-    _tell(made, [entry for one in found for entry in one.left_out], as_json)
+    points = _chosen(points, compound, surface, interface, _quantity("--load", load, "N"), each=each)
+    left_out = [entry for one in found for entry in one.left_out]
+
+    one_of = partial(_curve, runs[0], reference_c, ts_words)
+    made = curves_of(points, one_of) if each else [one_of(points)]
+    tell_each(made, left_out, as_json) if each else _tell(made[0], left_out, as_json)
     if out is not None:
-        _write(made, out, kind_of_file)
-    codes = {Verdict.COLLAPSES: EXIT_DONE, Verdict.DOES_NOT: EXIT_FAILED, Verdict.OPEN: EXIT_INCOMPLETE}
-    return codes[made.judged.verdict]
+        write_each(made, out, kind_of_file) if each else _write(made[0], out, kind_of_file)
+    codes = {Verdict.DOES_NOT: EXIT_FAILED, Verdict.OPEN: EXIT_INCOMPLETE, Verdict.COLLAPSES: EXIT_DONE}
+    found_verdicts = {one.judged.verdict for one in made}
+    return next(code for verdict, code in codes.items() if verdict in found_verdicts)
+
+
+def _curve(run: str, reference_c: float, ts_words: str | None, points: Sequence[MasterPoint]) -> Master:
+    """Return the curve of conditions of one compound on one track; ``run``: the materials beside it come first."""
+    from tester.analysis.master_curve.fitted_curve import master_of
+    from tester.cli.master_each import only_mechanism
+
+    name = points[0].compound
+    file = _compound_file(run, name)
+    glass_c = file.model.Tg if file is not None else None
+    only = only_mechanism(run, points[0].held)
+    return master_of(points, reference_c, _ts(ts_words, name, glass_c), _rubber(file), glass_c, only=only)
 
 
 def _ending(given: str | None, out: Path | None) -> str:
@@ -164,8 +184,12 @@ def _chosen(
     surface: str | None,
     interface: str | None,
     load_n: float | None,
+    *,
+    each: bool,
 ) -> list[MasterPoint]:
-    """Return the conditions that were asked for; a usage error where they differ in more than speed and temperature."""
+    """Return the conditions that were asked for; a usage error where they differ in more than speed and temperature,
+    unless ``each`` has its curve.
+    """
     left = [*points]
     load = None if load_n is None else f"{load_n:g} N"
     wanted = {"compound": compound, "surface": surface, "interface": interface, "load": load}
@@ -175,8 +199,9 @@ def _chosen(
             if value not in there:
                 raise click.UsageError(f"--{name}: no condition of {value!r} (there are {', '.join(there) or 'none'})")
             left = [one for one in left if _held(one, name) == value]
-        elif len(there) > 1:
-            raise click.UsageError(f"conditions of several values of {name}: {', '.join(there)}; choose with --{name}")
+        elif len(there) > 1 and not each:
+            which = f"several values of {name}: {', '.join(there)}"
+            raise click.UsageError(f"conditions of {which}; choose with --{name}, or --each")
     if not left:
         raise click.ClickException("no condition has a value to rely on")
     return left

@@ -104,7 +104,7 @@ def _of_moduli(loaded: LoadedCompound) -> Iterable[str]:
 def _over_frequency(loaded: LoadedCompound) -> Iterable[str]:
     import numpy as np
 
-    from tester.analysis.master_curve.peaks import GRIT_M, JUMP_M, rules_of
+    from tester.analysis.master_curve.rules import GRIT_M, JUMP_M, rules_of
     from tester.inputs.materials.library import MissingModuliError, rubber_of
 
     try:

@@ -58,6 +58,27 @@ def master_chart(master: Master) -> Chart:
     )
 
 
+def masters_chart(masters: Sequence[Master]) -> Chart:
+    """Return the figure of several master curves over aT v, each with its spline, colour and mark."""
+    series: list[Series] = []
+    for i, master in enumerate(masters):
+        first, rows = master.points[0], master.rows()
+        look: Look = "published" if i // STYLES % 2 else "measured"
+        label = ", ".join((first.compound, *first.held.values()))
+        series.append(Series(label, tuple(float(10.0**row.x) for row in rows), tuple(row.mu for row in rows), look, i))
+        x = np.linspace(float(np.min(master.collapse.x)), float(np.max(master.collapse.x)), PLACES)
+        mu = tuple(float(value) for value in np.exp(master.collapse.curve.at(x)))
+        series.append(Series("", tuple(float(10.0**at) for at in x - master.back), mu, "limit", 0))
+    return Chart(
+        name="masters",
+        title="master curves",
+        x_label=f"aT v /m·s⁻¹ at {masters[0].reference_c:g} °C",
+        y_label="friction coefficient",
+        panels=(ChartPanel("", tuple(series), joined=False),),
+        log_x=True,
+    )
+
+
 def components_chart(
     at: Callable[[float], tuple[float, float]], x: Sequence[float], x_label: str, title: str, note: str
 ) -> Chart:

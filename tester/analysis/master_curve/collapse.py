@@ -154,23 +154,23 @@ def collapse(of: MasterSet, ts_c: float | None = None, resamples: int = RESAMPLE
     if n < LEAST_ROWS:
         raise MasterError(f"{n} conditions are too few for a curve (expected at least {LEAST_ROWS})")
     y = padded(of, of.log_mu)
-    most = min(MOST_KNOTS, n // ROWS_A_KNOT)
     coldest_c = float(np.min(of.celsius))
     low, high = coldest_c - BELOW_K, coldest_c + C2_K - POLE_K
 
     def left(trial_c: float, interior: int) -> float:
-        q = orthonormal(_columns(of, of.log_v + shifts(of.celsius, trial_c), interior))
-        return float(np.sum(left_over(q, y) ** 2))
+        return left_of(of, of.log_v + shifts(of.celsius, trial_c), interior, y)
 
     trials = np.arange(low, high, GRID_K) if ts_c is None else np.array([ts_c])
     candidates = [
-        (_criterion(min_left, n, k), k, at) for k in range(most + 1) for min_left, at in [_least(left, trials, k)]
+        (criterion(min_left, n, k), k, at)
+        for k in range(most_knots(n) + 1)
+        for min_left, at in [_least(left, trials, k)]
     ]
     _, interior, nearest_c = min(candidates)
     best_c = nearest_c
     if ts_c is None:
         within = max(low, nearest_c - GRID_K), min(high, nearest_c + GRID_K)
-        best_c = _golden(lambda at: left(at, interior), *within)
+        best_c = golden(lambda at: left(at, interior), *within)
     x = of.log_v + shifts(of.celsius, best_c)
     curve, residual = curve_through(of, x, interior, y)
     ends = min(best_c - low, high - best_c) < GRID_K
@@ -193,16 +193,27 @@ def _least(left: Callable[[float, int], float], trials: Array, interior: int) ->
     return min((left(float(at), interior), float(at)) for at in trials)
 
 
-def _criterion(left: float, n: int, interior: int) -> float:
+def most_knots(n: int) -> int:
+    """Return the greatest number of interior knots for n conditions."""
+    return min(MOST_KNOTS, n // ROWS_A_KNOT)
+
+
+def left_of(of: MasterSet, x: Array, interior: int, y: Array) -> float:
+    """Return the sum of squares of ``y`` (``padded``) about its spline over x with ``interior`` knots."""
+    return float(np.sum(left_over(orthonormal(_columns(of, x, interior)), y) ** 2))
+
+
+def criterion(left: float, n: int, interior: int) -> float:
+    """Return Akaike's criterion, corrected for few data, of a spline and a shift: -2 ln likelihood with a penalty."""
     p = interior + 5
     return n * log(max(left / n, _LEAST_LN**2)) + 2.0 * p + 2.0 * p * (p + 1) / max(n - p - 1, 1)
 
 
-def _golden(value: Callable[[float], float], low: float, high: float) -> float:
-    """Return the place of a function's minimum between two temperatures, within 1 mK."""
+def golden(value: Callable[[float], float], low: float, high: float, within: float = 1e-3) -> float:
+    """Return the place of a function's minimum between two places, within a distance."""
     a, b = high - _GOLDEN * (high - low), low + _GOLDEN * (high - low)
     at_a, at_b = value(a), value(b)
-    while high - low > 1e-3:
+    while high - low > within:
         if at_a <= at_b:
             high, b, at_b = b, a, at_a
             a = high - _GOLDEN * (high - low)
@@ -234,7 +245,7 @@ def _with_interval(point_estimate: Collapse, bounds: tuple[float, float], resamp
         return replace(point_estimate, u_factors_k=u_factors_k, drawn=drawn)
     reach = min(max(_REACH * u_k, 0.2), BELOW_K)
     trials = np.linspace(max(bounds[0], point_estimate.ts_c - reach), min(bounds[1], point_estimate.ts_c + reach), 49)
-    left = np.array([_left_of(of, float(at), point_estimate.interior, y) for at in trials])
+    left = np.array([_left_at(of, float(at), point_estimate.interior, y) for at in trials])
     ts_drawn = _lowest(trials, left)
     low, high = np.quantile(ts_drawn + thermometer_k, [0.025, 0.975])
     return replace(
@@ -260,7 +271,7 @@ def _between(residual: Array, of: MasterSet) -> float:
     return sqrt(max(between - within, 0.0) * blocks / n)
 
 
-def _left_of(of: MasterSet, ts_c: float, interior: int, y: Array) -> Array:
+def _left_at(of: MasterSet, ts_c: float, interior: int, y: Array) -> Array:
     q = orthonormal(_columns(of, of.log_v + shifts(of.celsius, ts_c), interior))
     return np.asarray(np.sum(y**2, axis=0) - np.sum((q.T @ y) ** 2, axis=0))
 

@@ -11,9 +11,11 @@ from sim.physics.materials import Rubber
 from sim.physics.wlf import PoleError
 from tester.analysis.master_curve.collapse import RESAMPLES, Collapse, collapse, shifts
 from tester.analysis.master_curve.overlap import TemperaturePair, pairs_of
-from tester.analysis.master_curve.peaks import Peak, Rule, peaks_of, rules_of
+from tester.analysis.master_curve.peaks import Peak, peaks_of
 from tester.analysis.master_curve.points import MasterError, MasterPoint, set_of
-from tester.analysis.master_curve.verdict import MasterJudgement, judge
+from tester.analysis.master_curve.rules import Mechanism, Rule, rules_of
+from tester.analysis.master_curve.shift_choice import ShiftChoice, choice_of
+from tester.analysis.master_curve.verdict import LEAST_TEMPERATURES, MasterJudgement, judge
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,6 +43,8 @@ class Master:
     rules: tuple[Rule, ...] = ()
     glass_c: float | None = None
     """Glass transition by the compound's file."""
+    choice: ShiftChoice | None = None
+    """WLF or Arrhenius, where Ts was searched over three temperatures or more."""
 
     @property
     def points(self) -> tuple[MasterPoint, ...]:
@@ -68,9 +72,10 @@ def master_of(
     rubber: Rubber | None = None,
     glass_c: float | None = None,
     resamples: int = RESAMPLES,
+    only: Mechanism | None = None,
 ) -> Master:
     """Return the master curve of conditions; ``ts_c``: Ts of the shift, None: it is searched; ``rubber``: its moduli;
-    ``glass_c``: its glass transition, where they are known.
+    ``glass_c``: its glass transition, where they are known; ``only``: the mechanism of a curve's only maximum.
 
     Raises MasterError where there is none: too few conditions, a temperature beyond the pole of the shift.
     """
@@ -78,7 +83,9 @@ def master_of(
         collapsed = collapse(set_of(points), ts_c, resamples)
         pairs = pairs_of(collapsed)
         peaks, bumps = peaks_of(collapsed, reference_c)
-        rules = rules_of(rubber.modulus, reference_c, peaks) if rubber is not None else ()
+        rules = rules_of(rubber.modulus, reference_c, peaks, only) if rubber is not None else ()
     except PoleError as error:
         raise MasterError(f"no shift: {error}") from error
-    return Master(reference_c, collapsed, pairs, judge(collapsed, pairs), peaks, bumps, rules, glass_c)
+    several = collapsed.searched and len(collapsed.of.blocks_c) >= LEAST_TEMPERATURES
+    choice = choice_of(collapsed) if several else None
+    return Master(reference_c, collapsed, pairs, judge(collapsed, pairs), peaks, bumps, rules, glass_c, choice)

@@ -1,11 +1,4 @@
-"""Grosch's two rules for the maxima of friction, from the compound's moduli, and the maxima of a master curve.
-
-  v = 6 nm x omega(maximum of the loss modulus) / 2 pi     adhesion: the molecular jump
-  v = 150 um x omega(maximum of the loss factor) / 2 pi    deformation: the spacing of the abrasive's grit
-
-Proc. Roy. Soc. A 274 (1963) 21; lengths as paper S prints them (Sharp, Gruber, Fina: circuit racing, track texture,
-temperature and rubber friction), frequencies in rad/s at the temperature of the master curve.
-"""
+"""The maxima of a master curve, with their intervals."""
 
 from __future__ import annotations
 
@@ -15,13 +8,9 @@ from typing import Final
 
 import numpy as np
 
-from sim.physics.loss_maxima import loss_maxima
-from sim.physics.materials import ShearModulus
 from tester.analysis.master_curve.collapse import Collapse, Curve, curve_through, padded, shifts
 from tester.base.arrays import Array
 
-JUMP_M: Final = 6e-9
-GRIT_M: Final = 150e-6
 PROMINENT: Final = 0.02
 """A maximum of the curve counts where ln mu falls by more than this on both sides [A] ..."""
 SCATTERS: Final = 3.0
@@ -45,23 +34,6 @@ class Peak:
     speed_m_s: float
     mu: float
     interval_m_s: tuple[float, float] = (nan, nan)
-
-
-@dataclass(frozen=True, slots=True)
-class Rule:
-    """A rule's speed at the reference temperature, m/s; NaN where the known moduli have no such maximum.
-
-    ``nearest_m_s``: the nearest maximum of the curve, ``decades``: its distance above the rule, both NaN for none.
-    """
-
-    name: str
-    speed_m_s: float
-    nearest_m_s: float = nan
-
-    @property
-    def decades(self) -> float:
-        """Return the distance of the curve's maximum above the rule, decades."""
-        return float(np.log10(self.nearest_m_s / self.speed_m_s))
 
 
 def peaks_of(collapse: Collapse, reference_c: float) -> tuple[tuple[Peak, ...], int]:
@@ -126,20 +98,3 @@ def _falls(y: Array) -> float:
     """Return how far values fall from the first before they rise above it."""
     above = np.flatnonzero(y > y[0])
     return float(y[0] - np.min(y[: above[0]] if above.size else y))
-
-
-def rules_of(modulus: ShearModulus, reference_c: float, peaks: tuple[Peak, ...]) -> tuple[Rule, ...]:
-    """Return Grosch's two rules for a compound, compared with the maxima of a curve."""
-    of_modulus_hz, of_factor_hz = loss_maxima(modulus, reference_c)
-    named = (
-        ("6 nm x omega of the loss modulus' maximum / 2 pi", JUMP_M * of_modulus_hz),
-        ("150 um x omega of the loss factor's maximum / 2 pi", GRIT_M * of_factor_hz),
-    )
-    return tuple(_rule(name, speed_m_s, peaks) for name, speed_m_s in named)
-
-
-def _rule(name: str, speed_m_s: float, peaks: tuple[Peak, ...]) -> Rule:
-    if not (peaks and speed_m_s > 0.0):
-        return Rule(name, speed_m_s)
-    nearest = min(peaks, key=lambda peak: abs(np.log10(peak.speed_m_s / speed_m_s)))
-    return Rule(name, speed_m_s, nearest.speed_m_s)

@@ -8,6 +8,8 @@ from math import isfinite
 from sim.physics.wlf import GLASS_TO_REFERENCE_K
 from tester.analysis.master_curve.fitted_curve import Master
 from tester.analysis.master_curve.overlap import TemperaturePair
+from tester.analysis.master_curve.rules import Rule
+from tester.analysis.master_curve.shift_choice import DECIDES, ShiftChoice
 from tester.analysis.master_curve.verdict import TEST_WORDS
 from tester.base.words import Json, finite
 
@@ -66,7 +68,9 @@ def summary_lines(master: Master) -> Iterator[str]:
     if master.bumps:
         yield f"further maxima of the curve that its scatter may have made: {master.bumps}"
     for rule in master.rules:
-        yield f"Grosch, {rule.name}: {_rule_words(rule.speed_m_s, rule.decades)}"
+        yield f"Grosch, {rule.name}: {rule_words(rule)}"
+    if master.choice is not None:
+        yield choice_words(master.choice)
     yield from _pair_lines(master)
 
 
@@ -80,12 +84,27 @@ def _ts_words(master: Master) -> str:
     return f"{c.ts_c:.2f} degC (95 %: {low:.2f} to {high:.2f}; standard uncertainty {parts})"
 
 
-def _rule_words(speed_m_s: float, decades: float) -> str:
-    if not isfinite(speed_m_s):
+def rule_words(rule: Rule) -> str:
+    """Return the outcome of a rule."""
+    if not isfinite(rule.speed_m_s):
         return "the moduli have no such maximum where they are known"
-    if not isfinite(decades):
-        return f"{speed_m_s:.3g} m/s; the curve has no maximum"
-    return f"{speed_m_s:.3g} m/s; the curve's nearest maximum is {decades:+.2f} decades from it"
+    if rule.peak is None:
+        return f"{rule.speed_m_s:.3g} m/s; the curve has no maximum of {rule.mechanism.value}"
+    if not rule.assigned:
+        return f"{rule.speed_m_s:.3g} m/s; the curve's nearest maximum is {rule.decades:+.2f} decades from it"
+    low, high = rule.interval
+    return (
+        f"{rule.speed_m_s:.3g} m/s; the maximum of {rule.mechanism.value} is {rule.decades:+.2f} decades from it (95 %:"
+        f" {low:+.2f} to {high:+.2f}): the rule {rule.verdict.value}"
+    )
+
+
+def choice_words(choice: ShiftChoice) -> str:
+    """Return which shift is likelier."""
+    best = f"Arrhenius with its best {1e-3 * choice.activation_j_mol:.0f} kJ/mol"
+    found = f"ln likelihood {choice.wlf_over_arrhenius:+.1f} (expected beyond {DECIDES:g})"
+    outcome = f"{choice.likelier} is likelier" if choice.likelier else "cannot tell"
+    return f"WLF against {best}: {found}: {outcome}"
 
 
 def _pair_lines(master: Master) -> Iterator[str]:
@@ -141,12 +160,31 @@ def plain(master: Master) -> dict[str, Json]:
             for peak in master.peaks
         ],
         "bumps": master.bumps,
-        "rules": [
-            {"rule": rule.name, "speed_m_s": finite(rule.speed_m_s), "decades": finite(rule.decades)}
-            for rule in master.rules
-        ],
+        "rules": [_rule(rule) for rule in master.rules],
+        "shift": _shift(master.choice),
         "neighbours": [_pair(pair) for pair in master.pairs],
         "rows": rows,
+    }
+
+
+def _rule(rule: Rule) -> Json:
+    return {
+        "rule": rule.name,
+        "mechanism": rule.mechanism.value,
+        "speed_m_s": finite(rule.speed_m_s),
+        "decades": finite(rule.decades),
+        "interval_decades": [finite(end) for end in rule.interval],
+        "verdict": rule.verdict.value,
+    }
+
+
+def _shift(choice: ShiftChoice | None) -> Json:
+    if choice is None:
+        return None
+    return {
+        "activation_j_mol": choice.activation_j_mol,
+        "wlf_over_arrhenius": choice.wlf_over_arrhenius,
+        "likelier": choice.likelier,
     }
 
 

@@ -1,7 +1,7 @@
 """`python -m tests.campaigns.master [--seeds N] [--jobs N] [--only PART] [--sample]`: master curves, truth known.
 
 Synthetic two-peak sets of 99 conditions: how near Ts comes, how often its interval holds it, and whether sets that do
-not collapse are told from those that do. Then the simulated slow track, from the recipe to Ts.
+not collapse are told from those that do. Then the simulated slow track, from the recipe to Ts, and Grosch's rules.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ import numpy as np
 from tester.analysis.master_curve.fitted_curve import Master, master_of
 from tester.analysis.master_curve.points import MasterPoint
 from tester.analysis.master_curve.verdict import Verdict
+from tests.campaigns.master import rules
 from tests.campaigns.master.synthetic import FAILING, TS_C, synthetic
 from tests.campaigns.master.twin import Found, measured
 
@@ -128,7 +129,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m tests.campaigns.master", description=__doc__)
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"simulated runs of each sort ({SEEDS})")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")
-    parser.add_argument("--only", choices=("synthetic", "twin"), help="sets that are made up, or simulated runs")
+    parts = ("synthetic", "twin", "rules")
+    parser.add_argument("--only", choices=parts, help="sets that are made up, simulated runs, or Grosch's rules")
     parser.add_argument("--sample", action="store_true", help="few synthetic sets, one simulated run")
     read = parser.parse_args(arguments)
     sets = SAMPLE_SETS if read.sample else SETS
@@ -140,11 +142,15 @@ def main(arguments: Sequence[str] | None = None) -> int:
         missed += not met
         print(f"{'ok  ' if met else 'MISS'} {text}", flush=True)
 
-    if read.only != "twin":
+    if read.only in (None, "synthetic"):
         for figure in made_up(sets, SAMPLE_COVERED if read.sample else COVERED_SETS):
             tell(figure)
-    if read.only != "synthetic":
+    if read.only in (None, "twin"):
         for figure in twin(1 if read.sample else read.seeds, read.jobs, sample=read.sample):
+            tell(figure)
+    if read.only in (None, "rules"):
+        runs = 0 if read.sample else min(rules.RUNS, read.seeds)
+        for figure in rules.figures(rules.SAMPLE_SEEDS if read.sample else read.seeds, runs, read.jobs):
             tell(figure)
     print("every figure met" if not missed else f"{missed} missed")
     return 1 if missed else 0

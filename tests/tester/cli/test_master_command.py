@@ -10,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from sim.physics.laws import LawSetting
+from sim.physics.track import TWO_BELLS, TrackParameters
 from tester.cli.main import invoke
 from tests.tester.kinds.specimen_on_track.fit.made import law, made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
@@ -106,7 +108,7 @@ def test_a_run_that_heated_itself_is_refused(home: Path, capsys: pytest.CaptureF
 def test_conditions_that_differ_in_more_have_to_be_chosen(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = str(made_track_run(home / "one", interfaces=("dry", "talc")))
     _, error = said(capsys, run, code=2)
-    assert "conditions of several values of interface: dry, talc; choose with --interface" in error
+    assert "conditions of several values of interface: dry, talc; choose with --interface, or --each" in error
     assert data(capsys, run, "--interface", "talc")["held"] == {"interface": "talc", "load": "20 N"}
     assert "no condition of 'wet' (there are dry, talc)" in said(capsys, run, "--interface", "wet", code=2)[1]
     assert "there are 20 N" in said(capsys, run, "--interface", "dry", "--load", "10 N", code=2)[1]
@@ -161,6 +163,50 @@ def test_a_compound_without_a_file_has_no_glass_transition(home: Path, capsys: p
     run = str(made_track_run(home / "one", compounds=("nameless",)))
     assert "no file has the Tg of nameless" in said(capsys, run, "--ts", "glass", code=2)[1]
     assert data(capsys, run)["rules"] == []
+
+
+TRACKS = {"wavy glass": "dry", "silicon carbide": "dry"}
+
+
+def surfaces(home: Path) -> list[str]:
+    """Return runs of the twin's law on glass and on silicon carbide."""
+    made: list[str] = []
+    for name in TRACKS:
+        law_of = TrackParameters(law=TWO_BELLS).law_of("SBR", LawSetting(surface=name))
+        folder = made_track_run(home / name.partition(" ")[0], mu=lambda t, v, law=law_of: law.mu(t, 20.0, v),
+                                metadata={"abrasive": name})  # fmt: skip
+        made.append(str(folder))
+    return made
+
+
+def test_each_has_a_row_for_each_curve_and_the_rules_over_all(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    table, error = said(capsys, *surfaces(home), "--each")
+    rows = table.splitlines()
+    assert len(rows) == 3 and rows[1].startswith("SBR, wavy glass, dry, 20 N") and "collapses" in rows[2]
+    assert (rows[1].count(" to "), rows[2].count(" to ")) == (2, 3)  # Ts, and one maximum on glass, two on the cloth
+    assert "rule of adhesion, 6 nm x omega of the loss modulus' maximum / 2 pi: holds" in error
+    assert "rule of deformation, 150 um x omega of the loss factor's maximum / 2 pi: holds" in error
+    assert error.count(": holds") == 5 and error.count("WLF is likelier") == 2
+
+
+def test_each_as_data_and_as_a_figure(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    runs = surfaces(home)
+    curves = data(capsys, *runs, "--each")["curves"]
+    assert [len(one["peaks"]) for one in curves] == [1, 2]
+    assert [[rule["verdict"] for rule in one["rules"]] for one in curves] == [["holds", "cannot tell"], ["holds"] * 2]
+    assert {one["shift"]["likelier"] for one in curves} == {"WLF"}
+    assert "a table has one curve" in said(capsys, *runs, "--each", "-o", "all.csv", code=2)[1]
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    said(capsys, *runs, "--each", "-o", "all.svg")
+    assert Path("all.svg").read_text(encoding="utf-8").count("<path") > 100
+
+
+def test_each_exits_as_the_worst_curve_and_compares_compounds(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run = str(made_track_run(home / "one", compounds=("SBR", "NR"), mu=lambda t, v: 0.5 * v**0.2))
+    table, _ = said(capsys, run, "--each", code=6)
+    assert table.count("cannot tell") == 2
+    made = made_track_run(home / "few", (0.0, 20.0), (1e-4, 1e-3))
+    assert "SBR, dry, 20 N: 4 conditions are too few" in said(capsys, str(made), "--each", code=1)[1]
 
 
 def test_a_run_named_twice_is_a_usage_error(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

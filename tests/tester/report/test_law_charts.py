@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from tester.analysis.master_curve.fitted_curve import master_of
-from tester.report.law_charts import master_chart
+from tester.report.law_charts import master_chart, masters_chart
 from tests.campaigns.master.synthetic import SPEEDS_M_S, synthetic
 
 MADE = master_of(synthetic(0, 0.02), 20.0, 30.0)
@@ -43,3 +43,10 @@ def test_each_panel_has_its_own_logarithmic_axis(tmp_path: Path) -> None:
 
     draw(master_chart(MADE), tmp_path / "master.svg")
     assert (tmp_path / "master.svg").read_text(encoding="utf-8").count("<path") > 100
+
+
+def test_several_curves_share_axes_each_with_its_own_look_and_spline() -> None:
+    (panel,) = masters_chart([MADE, MADE]).panels
+    points = [series for series in panel.series if series.look == "measured"]
+    assert [series.style for series in points] == [0, 1] and all(len(series.x) == 99 for series in points)
+    assert sum(series.look == "limit" for series in panel.series) == 2

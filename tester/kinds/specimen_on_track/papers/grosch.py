@@ -14,8 +14,9 @@ from sim.physics.track import TWO_BELLS, TrackParameters
 from sim.physics.track_bells import RUBBERS
 from sim.physics.wlf import GLASS_TO_REFERENCE_K, WlfBell, log10_shift
 from tester.analysis.master_curve.collapse import collapse
-from tester.analysis.master_curve.peaks import GRIT_M, JUMP_M, Peak, rules_of
+from tester.analysis.master_curve.peaks import Peak
 from tester.analysis.master_curve.points import MasterPoint, MasterSource, set_of
+from tester.analysis.master_curve.rules import GRIT_M, JUMP_M, rules_of
 from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempted, slight, unjudged
 from tester.kinds.specimen_on_track.papers.paper_parts import (
     PRESSURE_PA,

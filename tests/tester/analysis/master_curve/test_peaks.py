@@ -11,8 +11,9 @@ import pytest
 from sim.physics.materials import OutsideError
 from sim.physics.moduli import ConstantModulus, FractionalZener
 from tester.analysis.master_curve.collapse import collapse
-from tester.analysis.master_curve.peaks import Peak, peaks_of, rules_of
+from tester.analysis.master_curve.peaks import Peak, peaks_of
 from tester.analysis.master_curve.points import set_of
+from tester.analysis.master_curve.rules import rules_of
 from tests.campaigns.master.synthetic import TS_C, synthetic
 
 TRUE_X = [float(x) for x in (-3.5, 0.5)]
