@@ -15,7 +15,7 @@ from typing import Final
 import numpy as np
 
 from sim.physics.simple import GAS_J_MOL_K, KELVIN
-from tester.analysis.master_curve.collapse import Collapse, criterion, golden, left_of, most_knots, padded
+from tester.analysis.master_curve.collapse import Collapse, criterion, golden, left_of, numbers_of_knots, padded
 from tester.base.arrays import Array
 
 DECIDES: Final = 3.0
@@ -57,7 +57,7 @@ def choice_of(wlf: Collapse) -> ShiftChoice:
     trials = np.arange(LOWEST_J_MOL, HIGHEST_J_MOL + STEP_J_MOL, STEP_J_MOL)
     _, interior, near = min(
         (criterion(at_least, n, k), k, float(at))
-        for k in range(most_knots(n) + 1)
+        for k in numbers_of_knots(n)
         for at_least, at in [min((left(float(trial), k), trial) for trial in trials)]
     )
     best = golden(lambda at: left(at, interior), max(near - STEP_J_MOL, 1.0), near + STEP_J_MOL, 10.0)
