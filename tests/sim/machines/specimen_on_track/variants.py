@@ -91,5 +91,6 @@ def parameters(variant: str, **changes: object) -> TrackParameters:
     """Return a variant's plant, with fields of TrackParameters changed. Raises ValueError."""
     if variant not in SLOWEST_M_S:
         raise ValueError(f"no variant {variant!r}; there are {', '.join(SLOWEST_M_S)}")
-    own: dict[str, object] = {"motion": "disc", "enclosed": False} if variant == "pin-on-disc" else {}
+    disc: dict[str, object] = {"motion": "disc", "enclosed": False}
+    own = disc if variant == "pin-on-disc" else {"law": "two_bells"}
     return TrackParameters(**{**own, **changes})  # type: ignore[arg-type]
