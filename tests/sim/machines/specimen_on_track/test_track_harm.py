@@ -36,7 +36,7 @@ def test_a_track_that_moves_with_the_arm_raised_needs_no_tare() -> None:
 
 def test_a_force_beyond_the_cell_is_harm() -> None:
     rig = lower(made())
-    rig.put_on(150.0)
+    rig.put_on(200.0)
     assert watched(drive(rig, 10.0)) == ["force beyond the cell"]
 
 
