@@ -9,8 +9,9 @@ sideslip are in ``sim.physics.slip``.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING, Final
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Annotated, Any, Final
 
 if TYPE_CHECKING:
     import numpy as np
@@ -34,31 +35,75 @@ class UnknownCompoundError(ValueError):
 class PaperParameters:
     """mu = (alpha exp(-beta (t - tm)^2) + gamma) (a1 p^b1 v^b2 + a2), Eqs 4-9; degC, N, m/s."""
 
-    alpha: float
-    beta: float  # 1/K^2
-    gamma: float
-    a1: float
-    a2: float
-    b1: float
-    b2: float
-    tm: float  # degC
+    alpha: Annotated[float, "1"]
+    beta: Annotated[float, "1/K2"]
+    gamma: Annotated[float, "1"]
+    a1: Annotated[float, "1"]
+    a2: Annotated[float, "1"]
+    b1: Annotated[float, "1"]
+    b2: Annotated[float, "1"]
+    tm: Annotated[float, "degC"]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, ())
 
 
 @dataclass(frozen=True, slots=True)
 class V2Parameters:
-    """mu = (1 + alpha_n (g(t) - g(25))) exp(k (p - 200) / 200) (c (v / 0.3)^b2 + a2).
+    """mu = (1 + a (g(t) - g(25))) exp(k (p - 200) / 200) (c (v / 0.3)^b2 + a2).
 
     g(t) = exp(-beta (t - tm)^2); t in degC, p in N, v in m/s. Fitted to the 113 readable rows of both of the paper's
     appendices (`tester fit appendix-a appendix-b`; none whose value is inferred): mean error 4.0 %.
     """
 
-    alpha_n: float
-    beta: float  # 1/K^2
-    tm: float  # degC
-    c: float
-    k: float
-    b2: float
-    a2: float
+    a: Annotated[float, "1"]
+    beta: Annotated[float, "1/K2"]
+    tm: Annotated[float, "degC"]
+    c: Annotated[float, "1"]
+    k: Annotated[float, "1"]
+    b2: Annotated[float, "1"]
+    a2: Annotated[float, "1"]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, ("beta", "c", "b2"))
+
+
+@dataclass(frozen=True, slots=True)
+class NormalisedParameters:
+    """The paper's Eq 6 as (1 + a (g(t) - g(25))) (c (v / 0.3)^b2 (p / 200)^b1 + a2), without its redundancy.
+
+    In Eq 6, alpha and gamma may be multiplied by any number if a1 and a2 are divided by it.
+    """
+
+    a: Annotated[float, "1"]
+    beta: Annotated[float, "1/K2"]
+    tm: Annotated[float, "degC"]
+    b1: Annotated[float, "1"]
+    c: Annotated[float, "1"]
+    b2: Annotated[float, "1"]
+    a2: Annotated[float, "1"]
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for values out of range."""
+        _refuse(self, ("beta", "c", "b2"))
+
+    def as_printed(self) -> PaperParameters:
+        """Return the parameters in the form of the paper's Table 3, with f(25) = 1."""
+        gamma = 1.0 - self.a * math.exp(-self.beta * (V2_TEMPERATURE_C - self.tm) ** 2)
+        a1 = self.c * V2_LOAD_N**-self.b1 * V2_SLIP_M_S**-self.b2
+        return PaperParameters(self.a, self.beta, gamma, a1, self.a2, self.b1, self.b2, self.tm)
+
+
+def _refuse(group: Any, above_zero: tuple[str, ...]) -> None:
+    """Raise ValueError unless every number is finite, and above 0 where it has to be."""
+    for item in fields(group):
+        value: float = getattr(group, item.name)
+        if not math.isfinite(value):
+            raise ValueError(f"{item.name} must be finite, not {value!r}")
+        if item.name in above_zero and not value > 0.0:
+            raise ValueError(f"{item.name} must be above 0, not {value!r}")
 
 
 COMPOUNDS: Final[dict[str, PaperParameters]] = {
@@ -99,18 +144,25 @@ class FrictionModel:
     paper's form.
     """
 
-    def __init__(self, compound: str, model: str = "paper") -> None:
-        """Take a compound's constants; raises UnknownCompoundError, or ValueError for an unknown model."""
-        _checked(compound, model)
-        self._is_paper = model == "paper"
-        if self._is_paper:
-            p = COMPOUNDS[compound]
+    def __init__(
+        self, compound: str, model: str = "paper", parameters: PaperParameters | V2Parameters | None = None
+    ) -> None:
+        """Take a compound's constants, or the constants given, whatever the compound's name.
+
+        Raises UnknownCompoundError, or ValueError for an unknown model.
+        """
+        if parameters is None:
+            _checked(compound, model)
+            parameters = COMPOUNDS[compound] if model == "paper" else V2[compound]
+        self._is_paper = isinstance(parameters, PaperParameters)
+        if isinstance(parameters, PaperParameters):
+            p = parameters
             self._heat, self._beta, self._tm, self._base = p.alpha, p.beta, p.tm, p.gamma
             self._speed, self._b1, self._b2, self._a2, self._load = p.a1, p.b1, p.b2, p.a2, 0.0
         else:
-            q = V2[compound]
+            q = parameters
             at_25 = math.exp(-q.beta * (V2_TEMPERATURE_C - q.tm) ** 2)
-            self._heat, self._beta, self._tm, self._base = q.alpha_n, q.beta, q.tm, 1.0 - q.alpha_n * at_25
+            self._heat, self._beta, self._tm, self._base = q.a, q.beta, q.tm, 1.0 - q.a * at_25
             self._speed, self._b1, self._b2, self._a2 = q.c * V2_SLIP_M_S**-q.b2, 0.0, q.b2, q.a2
             self._load = q.k / V2_LOAD_N
 
@@ -122,6 +174,21 @@ class FrictionModel:
         if self._is_paper:
             return heat * (speed * load_n**self._b1 + self._a2)
         return heat * (speed + self._a2) * math.exp(self._load * (load_n - V2_LOAD_N))
+
+
+def model_of(model: str, compound: str, figures: Mapping[str, float]) -> FrictionModel:
+    """Return a model with figures of its own: those of V2Parameters for ``v2``; for ``paper`` those of Table 3, or of
+    NormalisedParameters. Raises ValueError."""
+    groups: list[Any] = [PaperParameters, NormalisedParameters] if model == "paper" else [V2Parameters]
+    for group in groups:
+        names = [item.name for item in fields(group)]
+        if sorted(names) == sorted(figures):
+            if not figures["b2"] > 0.0:
+                raise ValueError(f"b2 must be above 0, not {figures['b2']!r}: a wheel also rolls without slip")
+            made = group(**figures)
+            return FrictionModel(compound, model, made.as_printed() if group is NormalisedParameters else made)
+    ways = ", or ".join(", ".join(item.name for item in fields(group)) for group in groups)
+    raise ValueError(f"law {model!r} takes the figures {ways}, all of them, not {', '.join(figures)}")
 
 
 def coefficient(
@@ -171,7 +238,7 @@ def evaluate(
     at_25 = math.exp(-parameters.beta * (V2_TEMPERATURE_C - parameters.tm) ** 2)
     speed = parameters.c * (v / V2_SLIP_M_S) ** parameters.b2 + parameters.a2
     load = np.exp(parameters.k * (p - V2_LOAD_N) / V2_LOAD_N)
-    return (1.0 + parameters.alpha_n * (heat - at_25)) * load * speed
+    return (1.0 + parameters.a * (heat - at_25)) * load * speed
 
 
 def coefficients(

@@ -17,7 +17,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Final, Protocol, runtime_checkable
 
-from sim.physics.friction import MODEL_NAMES, FrictionModel
+from sim.physics.friction import MODEL_NAMES, FrictionModel, model_of
 from sim.physics.materials import Components, Materials, Rubber, Surface
 from sim.physics.simple import arrhenius, power
 from sim.physics.two_bells import two_bells
@@ -51,8 +51,22 @@ class LawOfRange(FrictionLaw, Protocol):
 
 
 @dataclass(frozen=True, slots=True)
+class StatedLaw:
+    """The law that a compound's file states: the name of a law, its figures, and the factor of a sideslip angle."""
+
+    form: str
+    figures: Mapping[str, float]
+    cornering: float = 0.0
+    """Extra friction per sin|sideslip|."""
+
+
+def _states_none(compound: str) -> StatedLaw | None:
+    return None
+
+
+@dataclass(frozen=True, slots=True)
 class LawSetting:
-    """Data for a law of materials besides compound and figures."""
+    """Data for a law besides compound and figures."""
 
     materials: Materials | None = None
     surface: str = ""
@@ -61,6 +75,8 @@ class LawSetting:
     """Nominal area of contact: the load over it is the pressure."""
     tables: Path | None = None
     """Folder for the tables of slow laws; None: they are made anew."""
+    stated: Callable[[str], StatedLaw | None] = _states_none
+    """Returns the law that a compound's file states; None without a file, or for one that states none."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -95,9 +111,7 @@ class NoPartsError(ValueError):
 
 
 def _of_the_paper(model: str, compound: str, figures: Mapping[str, float]) -> FrictionLaw:
-    if figures:
-        raise ValueError(f"law {model!r} has its figures from the paper and takes none, not {', '.join(figures)}")
-    return FrictionModel(compound, model)
+    return model_of(model, compound, figures) if figures else FrictionModel(compound, model)
 
 
 def _persson(rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> LawOfParts:

@@ -27,6 +27,15 @@ class Conditions(NamedTuple):
     points: list[FitPoint]
     left_out: list[tuple[str, str]]
 
+    def under(self, law: Law) -> Conditions:
+        """Return those at which a law has a value."""
+        if law.leaves_out is None:
+            return self
+        reasons = [law.leaves_out(point.nominal) for point in self.points]
+        left_out = [(point.label, why) for point, why in zip(self.points, reasons, strict=True) if why]
+        points = [point for point, why in zip(self.points, reasons, strict=True) if not why]
+        return Conditions(self.kind, points, [*self.left_out, *left_out])
+
 
 @command()
 @click.argument("sources", metavar="SOURCE...", nargs=-1, required=True)
@@ -35,7 +44,7 @@ class Conditions(NamedTuple):
 )
 @click.option(
     "--law", "law_name", metavar="LAW", default=None,
-    help="Of a wheel v2 (default) or paper, the Eq 6; of a track wlf_bell (default), power, persson or greta.",
+    help="Of a wheel v2 (default), paper, the Eq 6, or power; of a track wlf_bell (default), power, persson or greta.",
 )  # fmt: skip
 @click.option(
     "--hold", "holds", multiple=True, metavar="NAMES", help="Parameters not to fit: a,beta,tm as published, or tm=70."
@@ -75,6 +84,7 @@ def fit(
             f"--check: nothing is asked of this fit (expected {part.packaged[0]} --validate {part.packaged[-1]})"
         )
     law = _law(part, law_name)
+    fitted, others = fitted.under(law), others.under(law) if others is not None else None
     groups = by_group(fitted.points)
     if not groups:
         raise FitError(f"no condition of {', '.join(sources)} can be fitted{_why(fitted.left_out)}")

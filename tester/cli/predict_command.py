@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import click
 
 from sim.physics import laws
-from sim.physics.friction import MODEL_NAMES
-from sim.physics.slip import CORNERING, caveats
+from sim.physics.friction import MODEL_NAMES, UnknownCompoundError, in_range
+from sim.physics.slip import CORNERING, belt_speed_for, caveats, slip_velocity
 from sim.physics.slip import predict as model_value
 from tester.cli.options import QuantityType, json_option, print_json
 from tester.inputs.rig.profiles import extension_law
@@ -77,10 +79,11 @@ def predict(
                 f"--slip: {1e3 * slip:g} mm/s at a wheel speed of {wheel_speed:g} m/s needs a belt that runs backwards "
                 f"(expected at most {1e3 * wheel_speed:g} mm/s, or a larger --wheel-speed)"
             )
-        mu = model_value(compound, slip, load, temperature, sideslip, wheel_speed, law)
+        point = compound, slip, load, temperature, sideslip, wheel_speed, law
+        mu = model_value(*point) if compound in CORNERING else _by_file(*point)
     except ValueError as error:
         raise click.UsageError(str(error)) from error
-    if law in MODEL_NAMES:
+    if law in MODEL_NAMES and compound in CORNERING:
         for caveat in caveats(compound, slip, load, temperature, sideslip):
             click.echo(f"warning: {caveat}", err=True)
     if as_json:
@@ -88,3 +91,18 @@ def predict(
     else:
         click.echo(f"{mu:.5f}")
     return 0
+
+
+def _by_file(
+    compound: str, slip: float, load: float, temperature: float, sideslip: float, wheel_speed: float, law: str
+) -> float:
+    """Return the coefficient by the law in a compound's file. Raises ValueError, InvalidSource."""
+    from sim.physics.wheel_law import wheel_law
+    from tester.inputs.materials.setting import law_setting
+
+    found = wheel_law(law, compound, law_setting("", Path("recipe.yaml")))  # the working folder counts as a recipe's
+    if found.assumed:
+        raise ValueError(f"{UnknownCompoundError(compound)}, or one with law: in its file")
+    resultant = slip_velocity(wheel_speed, belt_speed_for(wheel_speed, slip), sideslip)[2]
+    in_range(temperature, load, resultant)
+    return found.mu(temperature, load, resultant) * found.cornering_factor(sideslip)

@@ -241,6 +241,8 @@ class Session(PartWatch):
         def begin(writer: RunWriter) -> None:
             writer.begin_run(info, specimens_of(work.plan), condition_records(work.plan))
             writer.begin_session(session_info(1, 0.0, o.operator))
+            for doubt in recipe.doubts:
+                writer.event(0.0, "doubt", doubt.message, "warning")
             if info.risk:
                 writer.event(0.0, "risk", info.risk, "warning")
 

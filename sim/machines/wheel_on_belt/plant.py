@@ -115,7 +115,7 @@ class Plant(Rubbing):
         ``specimen`` and ``wheel`` (0 and up) key the wheel's scatter. With ``new_specimen`` hub, belt and
         load cell start at ambient temperature as well; otherwise they keep their temperatures. A resumed run passes the
         wheel's earlier ``diameter_mm`` (at ambient temperature) and sliding distance in m; by default the wheel is
-        new. Raises UnknownCompoundError.
+        new. Raises the exceptions of ``wheel_law``.
         """
         p = self.parameters
         self._take(compound)

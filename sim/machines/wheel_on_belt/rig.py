@@ -22,6 +22,7 @@ from sim.nodes.drive_power import ENERGISED
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import VelocityAxis
 from sim.nodes.sensor_slave import CellSlave, IrSlave
+from sim.physics.laws import LawSetting
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import slip_velocity
 from sim.rig import LONGEST_STEP_S, RigSpec, SimRig
@@ -125,6 +126,14 @@ class WheelRig(SimRig):
     def ambient_c(self) -> float:
         """Temperature of the air around the rig, degC."""
         return self.plant.parameters.ambient
+
+    @property
+    def of_materials(self) -> bool:
+        """Return True: a compound outside the paper rubs by its file."""
+        return True
+
+    def take(self, setting: LawSetting) -> None:
+        self.plant.setting = setting
 
     # -- mechanics ------------------------------------------------------------------------------------------------
 

@@ -16,9 +16,10 @@ from math import cos, exp, inf, pi, radians, sin
 from typing import Final, NamedTuple
 
 from sim.noise import Autoregressive, NormalStream, StickSlip, normal
-from sim.physics import laws
+from sim.physics.laws import NO_SETTING, LawSetting
 from sim.physics.parameters import SimParameters
-from sim.physics.slip import cornering_factor, traction_direction
+from sim.physics.slip import traction_direction
+from sim.physics.wheel_law import ASSUMED, WheelLaw, wheel_law
 
 _RUNNING_IN_LASTS: Final = 37.0
 """Number of running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
@@ -30,10 +31,10 @@ class Rubbing:
     # Slots: CPython 3.11 keeps more than 30 attributes in a dictionary, and every step of the twin gets slower.
     __slots__ = (
         "_arm_m", "_blunts", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_excess", "_friction",
-        "_grip", "_law", "_noise", "_run_in_m", "_run_in_scale_m", "_scatter", "_sideslip_deg", "_sin", "_stick_slip",
-        "_touch_mm", "_wear_per_width", "_within", "belt_grip", "cold_mm", "condition_factor", "diameter_mm",
-        "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "mu", "parameters", "run_factor", "sliding_m",
-        "slip_m_s", "surface_c", "wheel_factor",
+        "_grip", "_law", "_noise", "_rubber", "_run_in_m", "_run_in_scale_m", "_scatter", "_sideslip_deg", "_sin",
+        "_stick_slip", "_touch_mm", "_wear_per_width", "_within", "belt_grip", "cold_mm", "condition_factor",
+        "diameter_mm", "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "mu", "parameters", "run_factor",
+        "setting", "sliding_m", "slip_m_s", "surface_c", "wheel_factor",
     )  # fmt: skip
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
@@ -59,17 +60,21 @@ class Rubbing:
         self._compound = ""
         self._friction, self._run_in_scale_m = p.friction, p.abrasion.running_in_distance
         self.wheel_factor = self.condition_factor = self.run_factor = self._scatter = 1.0
-        self._take("1#")
-        self._release()
-
-    def _take(self, compound: str) -> None:
-        """Set the law of a compound, and the running-in and wear of the parameters."""
-        p = self.parameters
+        self.setting: LawSetting = NO_SETTING
+        """Source of the compounds' laws and moduli, and the belt's surface."""
+        self._rubber: WheelLaw = wheel_law("paper", ASSUMED)  # without a wheel nothing rubs
+        self._law = self._rubber.law
         a = p.abrasion
-        self._law = laws.make(p.friction_model, compound)
         self._excess = p.running_in * a.running_in_excess
         self._run_in_m = _RUNNING_IN_LASTS * a.running_in_distance if self._excess > 0.0 else 0.0
         self._wear_per_width = p.wear * a.wear_rate / (pi * p.wheel.width)
+        self._release()
+
+    def _take(self, compound: str) -> None:
+        """Set the law of a compound."""
+        p = self.parameters
+        self._rubber = wheel_law(p.friction_model, compound, self.setting, p.friction.area, quick=True)
+        self._law = self._rubber.law
 
     def _release(self) -> None:
         """Set all forces to 0; the next touch builds friction up anew."""
@@ -85,7 +90,7 @@ class Rubbing:
         coefficient in this condition on the belt in its original state; times ``belt``, on the belt as it is; times
         ``run``, this repeat's, before noise, running-in and wear.
         """
-        model = self._law.mu(temperature_c, load_n, slip_m_s) * cornering_factor(self._compound, sideslip_deg)
+        model = self._law.mu(temperature_c, load_n, slip_m_s) * self._rubber.cornering_factor(sideslip_deg)
         return {
             "model": model,
             "condition": self.condition_factor,
@@ -110,7 +115,7 @@ class Rubbing:
         self._sideslip_deg = sideslip_deg
         angle = radians(sideslip_deg)
         self._cos, self._sin = cos(angle), sin(angle)
-        self._cornering = cornering_factor(self._compound, sideslip_deg) if self._compound else 1.0
+        self._cornering = self._rubber.cornering_factor(sideslip_deg) if self._compound else 1.0
 
     def _rub(self, dt: float, load_n: float, vx: float, vy: float) -> float:
         """Set the forces of a loaded contact, wear the tread and return the friction power in W."""

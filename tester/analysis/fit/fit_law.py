@@ -84,6 +84,10 @@ class Law:
     caution: str = ""
     beyond: Callable[[Sequence[float], Sequence[tuple[float, ...]]], Iterator[str]] | None = None
     """Yields, from parameters and the measured values of conditions, why the law does not hold at some of them."""
+    constants: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Further figures of the formula, which no fit changes, by name in the law's units."""
+    leaves_out: Callable[[tuple[float, ...]], str] | None = None
+    """Returns why the law has no value at the nominal values of a condition, "" where it has one."""
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import recipes
+from sim.physics.laws import StatedLaw
 from sim.physics.materials import Rubber, Shear, ShearModulus, Sinusoid, Spectrum, Surface, UnknownMaterialError
 from tester.base.source import InvalidSource, Problem, load_tree
 from tester.base.units import shown
@@ -110,6 +111,15 @@ class Library:
     def surface(self, name: str) -> Surface:
         """Return a surface as input of friction laws. Raises UnknownMaterialError, InvalidSource."""
         return surface_of(self.surface_file(name))
+
+    def stated_law(self, name: str) -> StatedLaw | None:
+        """Return the law that a compound's file states; None without a file, or for one without it.
+
+        Raises InvalidSource.
+        """
+        path = self.path("compound", name)
+        law = load_compound(path).model.law if path is not None else None
+        return law.stated() if law is not None else None
 
     def _found(self, role: Role, name: str) -> Path:
         path = self.path(role, name)

@@ -14,6 +14,7 @@ from pydantic import BaseModel, Field, model_validator
 
 from tester.base.units import Quantity
 from tester.base.validation import Section
+from tester.inputs.materials.stated_law import LawModel
 
 Text: TypeAlias = Annotated[str, Field(min_length=1, max_length=200)]
 Note: TypeAlias = Annotated[str, Field(min_length=1, max_length=2000)]
@@ -205,6 +206,8 @@ class CompoundModel(MaterialModel, frozen=True):
     shear: ShearModel | None = None
     over_temperature: OverTemperatureModel | None = None
     """its coefficient on an abrasive over temperature, from a fit or a publication"""
+    law: LawModel | None = None
+    """its law of friction on a simulated wheel, which knows only the paper's compounds by name"""
 
 
 class PowerLawModel(Section, frozen=True):

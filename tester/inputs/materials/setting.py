@@ -13,10 +13,11 @@ VARIABLE = "TESTER_CACHE_DIR"
 
 
 def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
-    """Return the setting on a surface of this name, with materials beside a recipe first."""
+    """Return the setting on a surface of this name, with materials and laws beside a recipe first."""
     from tester.inputs.materials.library import Library  # pydantic is slow to load: only where a law needs it
 
-    return LawSetting(Library.beside(recipe), surface, tables=cache_folder() / "laws")
+    library = Library.beside(recipe)
+    return LawSetting(library, surface, tables=cache_folder() / "laws", stated=library.stated_law)
 
 
 def cache_folder() -> Path:

@@ -13,8 +13,7 @@ from math import ceil
 from typing import TYPE_CHECKING, Final, NamedTuple
 
 from drivers.axis import AxisConfig
-from sim.physics import laws
-from sim.physics.friction import KNOWN
+from sim.physics.wheel_law import known_law
 from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.kinds.wheel_on_belt.interlocks.contact_force import STIFFNESS_EXPONENT, depth_mm
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind, WheelCondition
@@ -119,8 +118,8 @@ def friction_n(rig: RigConfig, compound: str, load_n: float, speed_m_s: float, a
     wheel, belt = rig.axes.wheel, rig.axes.belt
     wheel_n = _limit_nm(wheel) / (0.5e-3 * rig.interlocks.least_diameter_mm)
     belt_n = _limit_nm(belt) / (0.5e-3 * rig.geometry.belt_roller_diameter_mm)
-    if compound in KNOWN:
-        law = laws.make(rig.sim.friction_model, compound)
+    law = known_law(rig.sim.friction_model, compound)
+    if law is not None:
         own_n = (1.0 + POWER_SCATTER) * load_n * max(law.mu(one, load_n, speed_m_s) for one in at_c)
     else:
         own_n = rig.interlocks.friction_share * load_n + rig.interlocks.friction_least_n

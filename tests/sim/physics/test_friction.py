@@ -45,7 +45,7 @@ def test_v2_model_follows_its_formula_away_from_that_point(compound: str) -> Non
     def g(temperature_c: float) -> float:
         return math.exp(-q.beta * (temperature_c - q.tm) ** 2)
 
-    expected = (1.0 + q.alpha_n * (g(t) - g(25.0))) * math.exp(q.k * (p - 200.0) / 200.0)
+    expected = (1.0 + q.a * (g(t) - g(25.0))) * math.exp(q.k * (p - 200.0) / 200.0)
     expected *= q.c * (v / 0.3) ** q.b2 + q.a2
     assert coefficient(compound, t, p, v, "v2") == pytest.approx(expected, rel=1e-12)
 

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import asdict, replace
 
 import pytest
 
 from sim.physics import laws
-from sim.physics.friction import FrictionModel, UnknownCompoundError
+from sim.physics.friction import COMPOUNDS, V2, FrictionModel, UnknownCompoundError
 from sim.physics.materials import Components, Rubber, Surface
 from sim.physics.wlf import WlfBell
+from tester.kinds.wheel_on_belt.fit.laws import PAPER, joint_of
 from tests.sim.physics.materials_example import Shelf
 
 
@@ -69,11 +70,26 @@ def test_an_unknown_law_is_told_with_those_that_are_there() -> None:
         laws.make("magic", "1#")
 
 
-def test_the_papers_laws_know_their_compounds_and_take_no_figures() -> None:
+def test_the_papers_laws_know_their_compounds_or_take_all_their_figures() -> None:
     with pytest.raises(UnknownCompoundError):
         laws.make("paper", "9#")
-    with pytest.raises(ValueError, match="takes none, not mu"):
+    with pytest.raises(ValueError, match="all of them, not mu"):
         laws.make("paper", "1#", {"mu": 1.0})
+    own = laws.make("v2", "9#", asdict(V2["2#"]))
+    assert own.mu(40.0, 200.0, 0.3) == laws.make("v2", "2#").mu(40.0, 200.0, 0.3)
+
+
+def test_equation_6_takes_its_figures_printed_or_normalised() -> None:
+    printed = laws.make("paper", "9#", asdict(COMPOUNDS["3#"]))
+    normalised = laws.make("paper", "9#", dict(zip(PAPER.names, joint_of(COMPOUNDS["3#"]), strict=True)))
+    for at in ((25.0, 100.0, 0.1), (40.0, 200.0, 0.3), (85.0, 400.0, 0.0)):
+        assert printed.mu(*at) == laws.make("paper", "3#").mu(*at)
+        assert normalised.mu(*at) == pytest.approx(printed.mu(*at), rel=1e-12)
+
+
+def test_a_law_that_has_no_value_without_slip_is_refused() -> None:
+    with pytest.raises(ValueError, match="b2 must be above 0"):
+        laws.make("v2", "9#", asdict(V2["2#"]) | {"b2": -0.1})
 
 
 SETTING = laws.LawSetting(Shelf(), "grit", 100.0)

@@ -154,6 +154,15 @@ def test_one_temperature_is_refused_and_held_parameters_do(home: Path, capsys: p
     assert parameters["a"]["value"] == 0.224424 and not parameters["c"]["held"]
 
 
+def test_powers_of_slip_and_load_are_fitted_to_a_wheel_without_its_rolling_conditions(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    found = data(capsys, "fit", "appendix-a", "--law", "power")
+    assert [*found["groups"][0]["parameters"]] == ["a", "n", "m"]
+    rolling = [one["condition"] for one in found["not_fitted"] if one["reason"].startswith("no slip")]
+    assert rolling == ["A025", "A033", "A041"]
+
+
 def test_an_unknown_compound_has_nothing_published_to_hold(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made_run(home / "one", compound="2#")
     assert invoke(["fit", "one", "--hold", "tm"]) == 0
@@ -168,7 +177,7 @@ def test_an_unknown_compound_has_nothing_published_to_hold(home: Path, capsys: p
         (["appendix-c"], "no run appendix-c"),
         (["appendix-a", "appendix-a"], "named twice"),
         (["appendix-a", "--validate", "appendix-a"], "is fitted, and shows nothing of other conditions"),
-        (["appendix-a", "--law", "v3"], "no law 'v3' can be fitted (expected v2, paper)"),
+        (["appendix-a", "--law", "v3"], "no law 'v3' can be fitted (expected v2, paper, power)"),
         (["appendix-b", "--check"], "expected appendix-a --validate appendix-b"),
         ([], "Missing argument 'SOURCE...'"),
     ],

@@ -97,6 +97,7 @@ POWER: Final = Law(
     ),
     value=_power,
     published={},
+    constants={"v0": V0_M_S, "n0": N0_N},
 )
 
 

@@ -11,15 +11,17 @@ import math
 from collections.abc import Mapping
 from typing import TYPE_CHECKING, NamedTuple
 
-from sim.physics import laws
-from sim.physics.friction import KNOWN
-from sim.physics.slip import cornering_factor, slip_velocity
+from sim.physics.laws import FrictionLaw
+from sim.physics.slip import slip_velocity
+from sim.physics.wheel_law import WheelLaw
 from tester.analysis.judge import ALONE
 from tester.analysis.stability import REPEAT_WINDOWS
 from tester.base.axes import Setpoint
+from tester.base.source import InvalidSource
 from tester.inputs.recipe.repeats_section import expected
 from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, StepEstimate
 from tester.kinds.wheel_on_belt.image.axes import HeldSetpoint, held_by
+from tester.kinds.wheel_on_belt.recipe.twin_law import twin_law
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.recipe.constants import EstimateConstants
@@ -33,7 +35,7 @@ ROLLING_M_S = 1e-9
 class ConditionMotion(NamedTuple):
     """The speeds and times of a condition. They depend on neither load nor temperature, so a grid has few of them."""
 
-    model: laws.FrictionLaw | None
+    model: FrictionLaw | None
     cornering: float
     """Factor of the coefficient at the sideslip angle."""
     slip_m_s: float
@@ -87,16 +89,27 @@ class ConditionCosts:
         self.loss_mm_per_nm = 2.0 * rig.wear.rate_mm3_per_n_m / (area_m2 * 1e6)
         self.rubber_share = believed.friction_heat_fraction
         self.offset_k = rig.loops.heat.rolling_offset_k
-        self.models = {name: laws.make(rig.sim.friction_model, name) for name in KNOWN}
+        self._rig = rig
+        self._laws: dict[str, WheelLaw | None] = {}
         self._costs: dict[tuple[object, ...], StepEstimate] = {}
         self._motions: dict[tuple[object, ...], ConditionMotion] = {}
 
     def mu(self, compound: str, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> float:
         """Return the expected friction coefficient; a round figure for a compound without a model."""
-        model = self.models.get(compound)
-        if model is None:
+        law = self.law(compound)
+        if law is None:
             return self.constants.unknown_mu
-        return model.mu(temperature_c, load_n, slip_m_s) * cornering_factor(compound, sideslip_deg)
+        return law.mu(temperature_c, load_n, slip_m_s) * law.cornering_factor(sideslip_deg)
+
+    def law(self, compound: str) -> WheelLaw | None:
+        """Return the law of a compound, as far as it is known without the recipe's folder and surface."""
+        if compound not in self._laws:
+            try:
+                found = twin_law(self._rig, compound)
+                self._laws[compound] = found if self._rig.simulated or not found.assumed else None
+            except (ValueError, InvalidSource):
+                self._laws[compound] = None
+        return self._laws[compound]
 
     def s_percent(self, compound: str) -> float:
         """Return the expected standard deviation between repeats, per cent of the coefficient."""
@@ -159,13 +172,13 @@ class ConditionCosts:
         c = self.constants
         turn_s = self.turn_m / sp.wheel_speed_m_s
         yawed = sp.yawed
-        model = self.models.get(sp.compound)
+        law = self.law(sp.compound)
         slip_m_s = slip_velocity(sp.wheel_speed_m_s, sp.belt_speed_m_s, sp.sideslip_deg)[2]
         repeats = how.scheme.repeats_each * expected(how, self.s_percent(sp.compound))
         collected = REPEAT_WINDOWS * c.surplus if how.repeats > ALONE else c.alone
         return ConditionMotion(
-            model=model,
-            cornering=1.0 if model is None else cornering_factor(sp.compound, sp.sideslip_deg),
+            model=law.law if law is not None else None,
+            cornering=1.0 if law is None else law.cornering_factor(sp.sideslip_deg),
             slip_m_s=slip_m_s,
             turn_s=turn_s,
             soak_s=how.soak.for_s + c.next_condition_s,

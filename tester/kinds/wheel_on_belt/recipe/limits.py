@@ -7,14 +7,13 @@ limit is reported, so that all problems come at once. The schema reports unreada
 from __future__ import annotations
 
 from collections.abc import Iterator
-from difflib import get_close_matches
 from itertools import product
 from math import prod
 from typing import TYPE_CHECKING, NamedTuple
 
-from sim.physics import laws
-from sim.physics.friction import KNOWN
-from sim.physics.slip import cornering_factor, slip_velocity
+from sim.physics.friction import FrictionModel
+from sim.physics.slip import slip_velocity
+from sim.physics.wheel_law import WheelLaw
 from tester.base.axes import Axis
 from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import show, shown
@@ -23,6 +22,7 @@ from tester.kinds.wheel_on_belt.control.loops import hub_needed_c
 from tester.kinds.wheel_on_belt.image.axes import AXES, POSITIONED
 from tester.kinds.wheel_on_belt.recipe.references import AT
 from tester.kinds.wheel_on_belt.recipe.schema import REFERENCE_HELD
+from tester.kinds.wheel_on_belt.recipe.twin_law import TwinLaws
 from tester.kinds.wheel_on_belt.rig.wheel_rig import RIPPLE_N
 from tester.kinds.wheel_on_belt.stopped_contact import POWER_SCATTER, PlannedContact, contact, remedy, unheld
 
@@ -67,10 +67,10 @@ class Motion(NamedTuple):
 
 
 class _Case(NamedTuple):
-    """A compound at its temperature of greatest friction, at one slip speed."""
+    """A compound at a temperature, that of greatest friction if it is known, at one slip speed."""
 
     compound: str
-    model: laws.FrictionLaw
+    model: WheelLaw
     hottest: float
     slip: float
     cornering: float
@@ -93,7 +93,9 @@ class _Limits:
         places: list[Location] = [("specimens", index, "compound") for index in self._indices(("specimens",))]
         names = [self._node(at) for at in (*places, (*AT, "compound"))]
         self.compounds = list(dict.fromkeys(name for name in names if isinstance(name, str)))
-        self.models = {name: laws.make(rig.sim.friction_model, name) for name in self.compounds if name in KNOWN}
+        self.twin = TwinLaws(rig, tree)
+        found = {name: self.twin.law(name) for name in self.compounds}
+        self.models = {name: law for name, law in found.items() if law is not None}
 
     def problems(self) -> Iterator[Problem]:
         """Yield every problem, unordered, possibly twice."""
@@ -175,11 +177,8 @@ class _Limits:
 
     def _compound(self, at: Location) -> Iterator[Problem]:
         name = self._node(at)
-        if self.rig.simulated and isinstance(name, str) and name not in KNOWN:
-            near = get_close_matches(name, KNOWN, 1)
-            meant = f", did you mean {near[0]}?" if near else ""
-            message = f"compound: the simulated rig has no friction model for {shown(name)}{meant}"
-            yield self.tree.problem(at, f"{message} (expected one of {', '.join(KNOWN)})")
+        if self.rig.simulated and isinstance(name, str) and (fault := self.twin.fault(name)):
+            yield self.tree.problem(at, f"compound: {fault}")
 
     def _wheel_speeds(self, at: Location) -> Iterator[Problem]:
         for wheel in self._entries((*at, "wheel_speed"), "m/s"):
@@ -319,13 +318,14 @@ class _Limits:
             return
         cases: list[_Case] = []
         for name, model in self.models.items():
-            # Both friction models are a temperature factor times a factor of load and slip: the worst temperature
-            # is the same everywhere.
+            # Both of the paper's models are a temperature factor times a factor of load and slip: the worst
+            # temperature is the same everywhere.
             hottest = max(temperatures, key=lambda at_c: model.mu(at_c, pressing[0].value, motions[0].slip))
+            worst = [hottest] if isinstance(model.law, FrictionModel) else temperatures
             cases += [
-                _Case(name, model, hottest, motion.slip, cornering_factor(name, motion.sideslip_deg))
-                for motion in motions
-            ]
+                _Case(name, model, at_c, motion.slip, model.cornering_factor(motion.sideslip_deg))
+                for motion in motions for at_c in worst
+            ]  # fmt: skip
         for load in pressing:
             yield from self._power(load, cases)
 

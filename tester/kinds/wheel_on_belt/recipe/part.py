@@ -35,6 +35,7 @@ from tester.kinds.wheel_on_belt.recipe.schema import (
     for_wheels,
     wheel_settings,
 )
+from tester.kinds.wheel_on_belt.recipe.twin_law import twin_doubts
 from tester.kinds.wheel_on_belt.recipe.wear_checks import wear_problems
 from tester.kinds.wheel_on_belt.rig import RigConfig
 
@@ -145,6 +146,10 @@ class WheelPart(WheelDescription):
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
         """Yield conditions that each wear a wheel beyond ``wheel.replace_after``."""
         yield from wear_problems(for_wheels(recipe), tree, RigConfig.of(rig))
+
+    def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
+        """Yield the compounds whose law on the simulated wheel is assumed, or has too little friction."""
+        yield from twin_doubts(RigConfig.of(rig), recipe, tree)
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> WheelEstimator:
         """Return the estimator of a rig."""

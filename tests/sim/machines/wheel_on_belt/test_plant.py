@@ -12,7 +12,8 @@ import pytest
 from sim.machines.wheel_on_belt.plant import Plant
 from sim.machines.wheel_on_belt.rubbing import WheelSetting
 from sim.physics.contact import ContactModel
-from sim.physics.friction import KNOWN, FrictionModel, UnknownCompoundError
+from sim.physics.friction import KNOWN, FrictionModel
+from sim.physics.laws import LawSetting, StatedLaw
 from sim.physics.parameters import ContactParameters, DriveParameters, SimParameters
 from sim.physics.slip import cornering_factor, predict, slip_velocity, traction_direction
 
@@ -311,12 +312,24 @@ def test_new_specimen_starts_with_everything_at_ambient() -> None:
     assert (plant.hub_c, plant.belt_c, plant.surface_c, plant.load_cell.cell_c) == (25.0,) * 4
 
 
-def test_installing_an_unknown_compound_is_refused_and_changes_nothing() -> None:
+def test_installing_a_compound_without_a_usable_law_is_refused_and_changes_nothing() -> None:
     plant = mounted()
     run(plant, 5.0, 200.0)
-    with pytest.raises(UnknownCompoundError):
+    plant.setting = LawSetting(stated=lambda name: StatedLaw("v2", {"a": 1.0}))
+    with pytest.raises(ValueError, match="all of them"):
         plant.install(1, 2, "NBR", True)
     assert plant.sliding_m > 1.0
+
+
+def test_a_compound_rubs_by_the_law_of_its_file() -> None:
+    figures = {"a": 0.6, "v0": 0.3, "n": 0.2, "n0": 200.0, "m": -0.1}
+    plant = Plant(ROUND, 1)
+    plant.setting = LawSetting(stated=lambda name: StatedLaw("power", figures, 0.5) if name == "own" else None)
+    plant.install(1, 1, "own", True)
+    assert plant.truth(25.0, 200.0, 0.3, 0.0)["model"] == 0.6
+    assert plant.truth(25.0, 200.0, 0.3, 30.0)["model"] == pytest.approx(0.6 * 1.25)
+    plant.install(1, 2, "other", True)
+    assert plant.truth(25.0, 200.0, 0.3, 0.0)["model"] == FrictionModel("1#").mu(25.0, 200.0, 0.3)
 
 
 def test_repeat_without_a_wheel_is_refused() -> None:

@@ -331,11 +331,6 @@ def test_checking_returns_the_recipe_with_its_text() -> None:
             "r.yaml:8:20: slip_velocity: 0.65 m/s at a wheel speed of 0.8 m/s is more than is ever loaded"
             f" (limit 0.6 m/s: interlocks.max_slip {FROM_RIG}",
         ),
-        (
-            'compound: "1#"',
-            'compound: "4#"',
-            'r.yaml:3:15: compound: the simulated rig has no friction model for "4#" (expected one of 1#, 2#, 3#)',
-        ),
     ],
 )
 def test_what_is_beyond_the_rig_is_reported_at_the_value_with_the_source_of_the_limit(

@@ -155,8 +155,3 @@ def test_an_estimate_asks_the_law_on_the_recipes_surface() -> None:
     estimator.walk(plan)
     law = make("persson", "SBR", setting=LawSetting(Library.beside(), "S0", 100.0))
     assert estimator.mu_of("SBR", held) == pytest.approx(law.mu(held.temperature_c, held.load_n, held.track_m_s))
-
-
-def test_a_wheel_has_no_law_of_materials() -> None:
-    with pytest.raises(InvalidSource, match="friction_model: law 'persson' is made of a compound's modulus"):
-        load_rig("sim", ("sim.friction_model=persson",))

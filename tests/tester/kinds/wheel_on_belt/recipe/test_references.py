@@ -163,7 +163,6 @@ def test_it_goes_on_with_the_reserved_wheel_where_that_was_on() -> None:
         ("reference: {every: 5, temperature: 10 degC}\n", "below ambient"),
         ("reference: {every: 5, slip_velocity: 780 mm/s}\n", "a standing belt is never loaded"),
         ("reference: {every: 5, wheel_speed: 9 m/s}\n", "limits.wheel_speed"),
-        ('reference: {every: 5, wheel: a, compound: "9#"}\n', "no friction model"),
         ('reference: {every: 5, compound: "2#"}\n', "expected wheel with it"),
     ],
 )
