@@ -135,6 +135,7 @@ _LAWS: dict[str, LawMaker] = {
     "persson": OfMaterials(_persson, slow=True),
     "greta": OfMaterials(_greta, slow=True),
 }
+_FILES = (".yaml", ".yml")
 _FINDERS: list[Callable[[str], LawMaker | None]] = []
 
 
@@ -162,6 +163,8 @@ def find(name: str) -> LawMaker:
         for finder in _FINDERS:
             maker = finder(name)
             if maker is not None:
+                if name.endswith(_FILES):
+                    return maker  # a file may change: it is read anew
                 _LAWS[name] = maker
                 break
         else:

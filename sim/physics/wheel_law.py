@@ -77,7 +77,10 @@ def wheel_law(
 
 
 def known_law(model: str, compound: str) -> FrictionLaw | None:
-    """Return the law of a compound of the paper; None for any other, and where the law is made of files."""
+    """Return the law of a compound of the paper; None for any other, and where the law is made of files or not its."""
     if compound not in KNOWN or isinstance(laws.find(model), laws.OfMaterials):
         return None
-    return laws.make(model, compound)
+    try:
+        return laws.make(model, compound)
+    except ValueError:
+        return None

@@ -36,7 +36,18 @@ def compare(run1: str, run2: str | None, compounds: tuple[str, str] | None, as_j
     not. z is the difference over u; where it is beyond k, "differs" marks more than chance (95 %). Replicates are
     compared by their mean. Behind a coefficient, ! marks a number that is not to be trusted, ? one with a doubt
     (`tester show` lists it).
+
+    RUN2 may be the file of a kept law (`tester fit -o`): its predictions at the measured values, with their interval.
     """
+    from tester.inputs.rig.profiles import is_law_file
+
+    if run2 is not None and is_law_file(run2):
+        from tester.cli.predict_kept import compare_kept
+
+        if compounds:
+            raise click.UsageError("--compounds: a kept law is of one compound")
+        compare_kept(run1, run2, as_json=as_json)
+        return
     from tester.results.compared import comparison, same_rig
 
     names = (run1, run1 if run2 is None else run2)

@@ -36,7 +36,7 @@ REFERENCE_C = 20.0
     "--out", type=click.Path(file_okay=False, path_type=Path), default=Path("figures"), show_default=True,
     help="Folder; each run's figures get a folder in it.",
 )  # fmt: skip
-@click.option("--law", default="", metavar="LAW", help="Draw a law with published parameters: of a wheel paper or v2.")
+@click.option("--law", default="", metavar="LAW", help="Draw a kept law, or a published one: of a wheel paper, v2.")
 @click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")
 @click.option("--components", is_flag=True, help="No run: adhesion and hysteresis of a law of materials.")
 @click.option("--over", type=click.Choice(OVERS), default="ra", show_default=True, help="What --components goes over.")

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 import click
 
 from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.base.words import Json
-from tester.cli.options import command, json_option
+from tester.cli.options import QuantityType, command, json_option
 from tester.cli.stored_runs import of_one_kind, print_left_out
 from tester.cli.text_table import dump, shown
 
@@ -53,12 +54,17 @@ class Conditions(NamedTuple):
 @click.option(
     "--given", "givens", multiple=True, metavar="NAME=VALUE", help="A figure of a law of materials, such as area=64."
 )
-@click.option("--force", is_flag=True, help="Also print intervals and trends that are not to be relied on.")
+@click.option("--force", is_flag=True, help="Also print intervals not to be relied on; replace the file of -o.")
+@click.option(
+    "-o", "--out", type=click.Path(dir_okay=False, path_type=Path), default=None, metavar="FILE",
+    help="Keep the law in FILE, of several compounds one file each.",
+)  # fmt: skip
+@click.option("--area", type=QuantityType("mm2"), default=None, help="Nominal area of contact, kept with the law.")
 @click.option("--check", is_flag=True, help="Compare the paper's own table with the expected verdict.")
 @json_option
 def fit(
     sources: Sequence[str], validation: Sequence[str], law_name: str | None, holds: Sequence[str], surface: str,
-    givens: Sequence[str], force: bool, check: bool, as_json: bool,
+    givens: Sequence[str], force: bool, out: Path | None, area: float | None, check: bool, as_json: bool,
 ) -> int:  # fmt: skip
     """Fit a law of friction to the conditions of SOURCES: runs, or the paper's appendix-a and appendix-b.
 
@@ -69,38 +75,45 @@ def fit(
     exponents, trends. There are no intervals for a law that does not describe the conditions, for a parameter that has
     no meaning for a rubber, and where the repeatability is unknown.
 
-    --check, with appendix-a --validate appendix-b: the paper's table and our verdict.
+    -o keeps the law for `tester predict`, `compare`, `figure`, `export` and a simulated rig. --check, with appendix-a
+    --validate appendix-b: the paper's table and our verdict.
 
     Exit code 1: a law does not describe the conditions, a parameter has no meaning, or a figure of --check misses.
     """
     from tester.analysis.fit.fit_law import FitError, by_group
     from tester.analysis.fit.joint import fit_group
+    from tester.cli.keep_law import keep
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
     part = _part(fitted.kind)
     _refuse_mixed(fitted, sources, others, validation)
-    if check and not part.checked(sources, validation):
-        raise click.UsageError(
-            f"--check: nothing is asked of this fit (expected {part.packaged[0]} --validate {part.packaged[-1]})"
-        )
+    _refuse_unchecked(part, sources, validation, check=check)
     law = _law(part, law_name)
     fitted, others = fitted.under(law), others.under(law) if others is not None else None
     groups = by_group(fitted.points)
     if not groups:
         raise FitError(f"no condition of {', '.join(sources)} can be fitted{_why(fitted.left_out)}")
-    figures = _figures(givens)
-    fits = [
-        fit_group(part.bound(law, name, surface, figures), name, own, part.cells, _held(law, name, holds))
-        for name, own in groups.items()
-    ]
+    figures, cells = _figures(givens), part.cells
+    bound = {name: part.bound(law, name, surface, figures) for name in groups}
+    fits = [fit_group(bound[name], name, own, cells, _held(law, name, holds)) for name, own in groups.items()]
     rows = by_group(others.points) if others is not None else None
     table = part.published_table() if check else None
+    if out is not None:
+        keep(out, fits, fitted.kind.name, part, area, force)
     if as_json:
         dump(_as_json(law, fits, rows, fitted, force, table))
     else:
         _print(law, fits, rows, [*fitted.left_out, *(others.left_out if others is not None else [])], force, table)
     missed = table is not None and bool(table.missed)
     return EXIT_FAILED if missed or not all(one.sound for one in fits) else EXIT_DONE
+
+
+def _refuse_unchecked(part: FitPart, sources: Sequence[str], validation: Sequence[str], *, check: bool) -> None:
+    """Raise UsageError where --check is asked for and no verdict is known for these sources."""
+    if check and not part.checked(sources, validation):
+        raise click.UsageError(
+            f"--check: nothing is asked of this fit (expected {part.packaged[0]} --validate {part.packaged[-1]})"
+        )
 
 
 def _refuse_mixed(

@@ -11,11 +11,13 @@ from sim.physics.friction import MODEL_NAMES, UnknownCompoundError, in_range
 from sim.physics.slip import CORNERING, belt_speed_for, caveats, slip_velocity
 from sim.physics.slip import predict as model_value
 from tester.cli.options import QuantityType, json_option, print_json
-from tester.inputs.rig.profiles import extension_law
+from tester.inputs.rig.profiles import extension_law, is_law_file
 
 
 @click.command()
-@click.option("--compound", required=True, help='Compound: "1#", "2#" or "3#", or one that the law or a file knows.')
+@click.option(
+    "--compound", default=None, help='Compound: "1#", "2#" or "3#", or one that the law or a file knows.'
+)
 @click.option(
     "--slip",
     type=QuantityType("m/s"),
@@ -34,7 +36,7 @@ from tester.inputs.rig.profiles import extension_law
     default="paper",
     show_default=True,
     help="Law of friction: paper (equations 4-9), v2 (a better fit to the same data), wlf_bell, two_bells, power, "
-    "arrhenius, persson, greta, or one of an installed package.",
+    "arrhenius, persson, greta, the file of a kept law, or one of an installed package.",
 )
 @click.option("--surface", default="", metavar="NAME", help="Surface, for two_bells, persson and greta.")
 @click.option(
@@ -52,7 +54,7 @@ from tester.inputs.rig.profiles import extension_law
 )
 @json_option
 def predict(
-    compound: str, slip: float, load: float, temperature: float, sideslip: float, wheel_speed: float, law: str,
+    compound: str | None, slip: float, load: float, temperature: float, sideslip: float, wheel_speed: float, law: str,
     surface: str, area: float, components: bool, table: bool, as_json: bool,
 ) -> int:  # fmt: skip
     """Print the friction coefficient that a law gives for one condition.
@@ -60,10 +62,16 @@ def predict(
     The laws paper and v2 are the thermo-coupled model of Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY
     4.0), of a wheel on a belt: with a sideslip angle the slip is the vector between the wheel's plane and the belt's
     travel. The other laws of this program are of a specimen on a track; persson and greta are made of files of a
-    compound and a surface (see `tester materials`). Where the value is extrapolated, stderr has a warning.
+    compound and a surface (see `tester materials`).
+
+    A law that `tester fit -o` has kept also gives its interval. Where the value is extrapolated, stderr has a warning.
     """
     laws.look_up_with(extension_law)
     try:
+        if is_law_file(law):
+            return _kept(law, compound, temperature, load, slip, not (sideslip or components or table), as_json)
+        if compound is None:
+            raise click.UsageError("Missing option '--compound'.")
         of_materials = isinstance(laws.find(law), laws.OfMaterials)
         if of_materials or (law not in MODEL_NAMES and compound not in CORNERING):
             from tester.cli.predict_track import TrackPoint, predict_on_track
@@ -74,11 +82,7 @@ def predict(
             return predict_on_track(point, components=components, table=table, as_json=as_json)
         if components or table:
             raise ValueError(f"law {law} has neither parts nor a table (--components, --table: persson, greta)")
-        if slip > wheel_speed:
-            raise ValueError(
-                f"--slip: {1e3 * slip:g} mm/s at a wheel speed of {wheel_speed:g} m/s needs a belt that runs backwards "
-                f"(expected at most {1e3 * wheel_speed:g} mm/s, or a larger --wheel-speed)"
-            )
+        _refuse_backwards(slip, wheel_speed)
         point = compound, slip, load, temperature, sideslip, wheel_speed, law
         mu = model_value(*point) if compound in CORNERING else _by_file(*point)
     except ValueError as error:
@@ -91,6 +95,26 @@ def predict(
     else:
         click.echo(f"{mu:.5f}")
     return 0
+
+
+def _kept(
+    law: str, compound: str | None, temperature: float, load: float, slip: float, plain: bool, as_json: bool
+) -> int:
+    """Print a kept law's value. Raises ValueError if more is asked of it (not ``plain``)."""
+    from tester.cli.predict_kept import predict_kept
+
+    if not plain:
+        raise ValueError(f"{law} is a kept law: it has no --sideslip, --components or --table")
+    predict_kept(law, compound, temperature, load, slip, as_json=as_json)
+    return 0
+
+
+def _refuse_backwards(slip: float, wheel_speed: float) -> None:
+    if slip > wheel_speed:
+        raise ValueError(
+            f"--slip: {1e3 * slip:g} mm/s at a wheel speed of {wheel_speed:g} m/s needs a belt that runs backwards "
+            f"(expected at most {1e3 * wheel_speed:g} mm/s, or a larger --wheel-speed)"
+        )
 
 
 def _by_file(

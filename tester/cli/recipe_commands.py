@@ -86,15 +86,20 @@ def _materials(used: UsedMaterials) -> Iterator[str]:
 @click.option(
     "--of",
     "what",
-    type=click.Choice(["recipe", "compound", "surface"]),
+    type=click.Choice(["recipe", "compound", "surface", "law"]),
     default="recipe",
     show_default=True,
     help="Files to describe.",
 )
 def schema(what: str) -> None:
-    """Print the JSON Schema of recipes, or of compounds or surfaces, for editors and other programs."""
+    """Print the JSON Schema of recipes, compounds, surfaces or kept laws, for editors and other programs."""
     from tester.base.validation import editor_text
 
+    if what == "law":
+        from tester.inputs.kept_laws.law_schema import KeptLawModel
+
+        click.echo(editor_text(KeptLawModel), nl=False)
+        return
     if what != "recipe":
         from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 

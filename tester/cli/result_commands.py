@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import click
 
 from tester.base.words import Json, duration, finite
-from tester.cli.options import command, json_option
+from tester.cli.export_law import SOLVER_NAMES
+from tester.cli.options import QuantityType, command, json_option
 from tester.cli.stored_runs import run_folder
 from tester.cli.text_table import dump, fields, shown
 
@@ -228,7 +229,7 @@ def _table(results: RunResults) -> Iterator[str]:
 # tester export
 
 
-class FormatName(click.ParamType["Format"]):
+class FormatName(click.ParamType["Format | str"]):
     """The name of an export format: one that is shipped, or one of an installed package."""
 
     name = "format"
@@ -237,14 +238,14 @@ class FormatName(click.ParamType["Format"]):
         """Return the names there are; nothing is loaded for it."""
         from tester.results.formats import format_names
 
-        return f"[{'|'.join(format_names())}]"
+        return f"[{'|'.join((*format_names(), *SOLVER_NAMES))}]"
 
-    def convert(self, value: str | Format, param: click.Parameter | None, ctx: click.Context | None) -> Format:
-        """Return the format, loaded."""
+    def convert(self, value: str | Format, param: click.Parameter | None, ctx: click.Context | None) -> Format | str:
+        """Return the format, loaded; a format of laws by its name."""
         from tester.base.plugins import PluginError
         from tester.results.formats import FORMATS, Format, format_of
 
-        if isinstance(value, Format):
+        if isinstance(value, Format) or value in SOLVER_NAMES:
             return value
         try:
             return format_of(value)
@@ -259,16 +260,31 @@ class FormatName(click.ParamType["Format"]):
 @click.option(
     "--decimals", type=click.IntRange(0, 10), default=2, show_default=True, help="Of the appendix's coefficient."
 )
-def export(run: str, kind: Format, out: Path | None, decimals: int) -> None:
+@click.option("--area", type=QuantityType("mm2"), default=None, help="Of a law: area of contact (that in its file).")
+@click.option("--points", default="20x20x10", show_default=True, help="Of a law: speeds, pressures, temperatures.")
+def export(
+    run: str, kind: Format | str, out: Path | None, decimals: int, area: float | None, points: str
+) -> None:
     """Write a table of RUN: a run's folder, its name under runs, or latest.
+
+    RUN may be the file of a kept law (`tester fit -o`), for abaqus, ansys, lsdyna or csv: the coefficient over slip
+    speed, pressure and temperature, within the law's range.
 
     Conditions without a value that can be trusted are not in the appendix and are named on stderr; so are values that
     are to be taken with care.
     """
+    from tester.inputs.rig.profiles import is_law_file
     from tester.results.formats import Record
     from tester.results.run_files import write_format
     from tester.store.run_reader import RunReader
 
+    if is_law_file(run):
+        from tester.cli.export_law import export_law
+
+        export_law(run, kind if isinstance(kind, str) else kind.name, out, area, points)
+        return
+    if isinstance(kind, str) or area is not None:
+        raise click.UsageError(f"{run} is a run: --area and {', '.join(SOLVER_NAMES)} are for a kept law (LAW.yaml)")
     if out is None and not kind.is_text:
         raise click.UsageError(f"{kind.name} is not text: name a file with --out")
     with RunReader(run_folder(run)) as reader:

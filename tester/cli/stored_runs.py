@@ -11,6 +11,9 @@ import click
 from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
+    from tester.analysis.fit.fit_part import FitPart, LawPlace
+    from tester.base.axes import Setpoint
+    from tester.inputs.kept_laws.law_value import KeptLaw
     from tester.kinds.kind import Kind
     from tester.report.charts import Material
     from tester.results.run_results import RunResults
@@ -60,6 +63,8 @@ def kind_of(info: RunInfo) -> Kind | None:
 
 def material_of(results: RunResults, law: str, published: bool) -> Material:
     """Return the material of a run's figures; an unknown law is a usage error."""
+    from tester.inputs.kept_laws.law_value import load_law
+    from tester.inputs.rig.profiles import is_law_file
     from tester.report.charts import ChartValue, Material, values_of
 
     measured = values_of(results)
@@ -73,12 +78,46 @@ def material_of(results: RunResults, law: str, published: bool) -> Material:
     beside = [ChartValue(setpoint, mu) for setpoint, mu in part.published_values()] if published else []
     if not law:
         return Material(measured, beside)
+    if is_law_file(law):
+        kept = load_law(Path(law))
+        if results.run.info.kind != kept.model.kind:
+            raise click.UsageError(f"--law: {law} is of the kind {kept.model.kind}, not {results.run.info.kind}")
+        for doubt in kept.doubts:
+            click.echo(f"warning: {shown(doubt)}", err=True)
+        abrasive = results.run.info.metadata.get("abrasive", "")
+        value, caveats = _kept_at(kept, part, abrasive)
+        return Material(measured, beside, value, f"law {kept.name}", caveats)
     try:
         return Material(measured, beside, part.law_at(law), f"law {law}", part.law_caveats)
     except KeyError as error:
         known = ", ".join(part.published_laws)
         expected = f"expected {known}" if known else "of this kind of rig no law has any: fit one with tester fit"
         raise click.UsageError(f"--law: no law {law!r} with published parameters ({expected})") from error
+
+
+def _kept_at(
+    kept: KeptLaw, part: FitPart, abrasive: str
+) -> tuple[Callable[[Setpoint], float], Callable[[Setpoint], Sequence[str]]]:
+    """Return a kept law over setpoints, NaN where it is of something else, and what to take care of there."""
+    model = kept.model
+
+    def place(setpoint: Setpoint) -> LawPlace | None:
+        at = part.place(setpoint)
+        if at is None:
+            return None
+        of = at.subject
+        own = (of.compound, of.interface, of.surface or (abrasive if of.interface else ""))
+        return at if own == (model.compound, model.interface, model.surface) else None
+
+    def value(setpoint: Setpoint) -> float:
+        at = place(setpoint)
+        return kept.mu(*at[1:]) if at is not None else float("nan")
+
+    def caveats(setpoint: Setpoint) -> Sequence[str]:
+        at = place(setpoint)
+        return [*kept.beyond(*at[1:])] if at is not None else []
+
+    return value, caveats
 
 
 def of_one_kind(

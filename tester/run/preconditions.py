@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from datetime import date
 from pathlib import Path
 
@@ -23,7 +23,7 @@ from tester.machine.run import Outcome
 from tester.run.endings import EXIT_CODES, CannotStartError
 from tester.run.folder import Work, work_of
 from tester.run.kind_lookup import checked_recipe, load_rig, recipe_part
-from tester.run.run_materials import UsedMaterials, used_materials
+from tester.run.run_materials import UsedMaterials, law_file, used_materials
 from tester.run.session_options import SessionOptions
 from tester.store.disk import expected_bytes, too_little_room
 
@@ -126,4 +126,5 @@ def prepared(recipe: str, rig_name: str, overrides: tuple[str, ...], accept_risk
     loaded = checked_recipe(path, rig)
     work = work_of(loaded.recipe, rig)
     materials = used_materials(loaded.recipe, path)
+    materials = replace(materials, files=(*materials.files, *law_file(rig)))
     return Prepared(path, loaded, work, recipe_part(rig).estimate(work.plan, rig), materials)

@@ -1,4 +1,5 @@
 """Material files of a recipe: finds those of its compounds and surface, copies them to the run's folder, records them.
+A kept law by which a simulated rig rubs is kept with them.
 
 In the run's folder the copies have the same places next to the recipe as the originals have, so that a reader of that
 recipe finds the copies first. A name without a file remains only a name.
@@ -14,12 +15,13 @@ from pathlib import Path
 
 import recipes
 from sim.physics.materials import UnknownMaterialError
-from tester.base.source import InvalidSource
+from tester.base.source import InvalidSource, Problem
 from tester.inputs.materials.files import FOLDERS, MaterialFile, Role
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.material_schema import CompoundModel
 from tester.inputs.recipe.recipe_schema import Recipe, surfaces_of
 from tester.inputs.rig import Rig
+from tester.inputs.rig.profiles import LAW_KEYS, is_law_file
 from tester.run.kind_lookup import recipe_part
 from tester.store.disk import write_whole
 from tester.store.records import StoredMaterial
@@ -28,6 +30,7 @@ from tester.store.sql import text_sha256
 SHORT_BYTES = 256 * 1024
 """Greatest size up to which the content of a data file is recorded, if it is text, bytes."""
 PACKAGED = "packaged: "
+_FOLDERS: dict[str, str] = {**FOLDERS, "law": "laws"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,6 +76,21 @@ def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) ->
     return UsedMaterials(tuple(files), tuple(bare))
 
 
+def law_file(rig: Rig) -> tuple[MaterialFile, ...]:
+    """Return the file of the kept law by which a simulated rig rubs; none for another law. Raises InvalidSource."""
+    named = [str(getattr(rig.plant, key, "")) for _, key in LAW_KEYS]
+    files = [Path(name) for name in named if is_law_file(name)] if rig.simulated else []
+    return tuple(_law_file(path) for path in files)
+
+
+def _law_file(path: Path) -> MaterialFile:
+    from tester.inputs.kept_laws.law_value import load_law
+
+    kept = load_law(path)
+    doubts = tuple(Problem(str(path), 1, 1, doubt) for doubt in kept.doubts)
+    return MaterialFile("law", kept.model.compound, path, path.read_text(encoding="utf-8"), doubts=doubts)
+
+
 def described_compounds(recipe: Recipe, path: Path, rig: Rig) -> dict[str, CompoundModel]:
     """Return the models in the files of a recipe's compounds, by name; empty if they do not apply to the rubber on the
     rig.
@@ -104,7 +122,7 @@ def kept_files(files: Sequence[MaterialFile], taken: Iterable[str] = ()) -> tupl
     kept: list[KeptFile] = []
     for file in files:
         names = [file.path.name, *(data.name for data in file.data)]
-        folder = next(place for place in _places(FOLDERS[file.role]) if not there & {_at(place, n) for n in names})
+        folder = next(place for place in _places(_FOLDERS[file.role]) if not there & {_at(place, n) for n in names})
         there |= {_at(folder, name) for name in names}
         doubts = "\n".join(map(str, file.doubts))
         source = _source(file.path)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import NamedTuple
 
 from tester.analysis.fit.check import Errors
 from tester.analysis.fit.fit_law import FitError, Law, Sourced
@@ -53,6 +54,23 @@ class PublishedTable:
         return [line.way for line in self.lines if not line.met]
 
 
+class Subject(NamedTuple):
+    """What is fitted together: a compound, its interface and surface ("" for none)."""
+
+    compound: str
+    interface: str = ""
+    surface: str = ""
+
+
+class LawPlace(NamedTuple):
+    """What a law depends on, and of what: temperature in degC, load in N, sliding speed in m/s."""
+
+    subject: Subject
+    temperature_c: float
+    load_n: float
+    speed_m_s: float
+
+
 class FitPart:
     """A kind's contribution to fitting. Defaults: no conditions ship with the program, and nothing is published."""
 
@@ -82,6 +100,14 @@ class FitPart:
         if surface or figures:
             raise FitError(f"the law {law.name} takes no surface and no figures")
         return law
+
+    def subject(self, group: str) -> Subject:
+        """Return what a group of conditions is of."""
+        return Subject(group)
+
+    def place(self, setpoint: Setpoint) -> LawPlace | None:
+        """Return the variables of a law at a setpoint, None where no law has its axes."""
+        return None
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return published coefficients, each with its setpoint, for display beside measured ones."""

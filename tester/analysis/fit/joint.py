@@ -12,7 +12,7 @@ import numpy as np
 from tester.analysis.fit.check import Errors, errors_of, levels, refuse
 from tester.analysis.fit.fit_law import FitError, FitPoint, Law
 from tester.analysis.fit.lack import Lack, lack_of
-from tester.analysis.fit.resample import RESAMPLES, SEED, Resamples, resample, without_cells
+from tester.analysis.fit.resample import RESAMPLES, SEED, Resamples, covariance, resample, without_cells
 from tester.analysis.fit.solve import FitProblem, solve
 from tester.analysis.fit.trends import Interval, Trends, trends_of
 from tester.base.arrays import Array
@@ -50,6 +50,8 @@ class GroupFit:
     impossible: Mapping[str, str]
     heated: Mapping[str, str]
     condition_number: float
+    covariance: Array
+    """Of the fitted parameters, as searched: logarithms of those that are positive."""
     resamples: Resamples
     errors: Errors
     left_out_pairs: tuple[tuple[float, float], ...]
@@ -167,6 +169,7 @@ def fit_group(
         impossible=_impossible(law, held, parameters, known),
         heated=_heated(law, trends),
         condition_number=_condition_number(group, problem, fitted),
+        covariance=covariance(problem, fitted),
         resamples=resamples,
         errors=errors_of(predict(law, parameters, points), measured),
         left_out_pairs=tuple((value, measured[i]) for i, value in left_out),

@@ -57,6 +57,23 @@ def resample(problem: FitProblem, fitted: Array, count: int = RESAMPLES, seed: i
     return Resamples(problem.natural(solutions[ended]), count)
 
 
+def covariance(problem: FitProblem, fitted: Array) -> Array:
+    """Return the covariance of the free parameters, as searched (logarithms of those that are positive), shape (q, q).
+
+    Of the law linearised at the fit, with the errors of ``resample``: own ones as large as the residuals, and those in
+    common.
+    """
+    prior = np.zeros(problem.priors)
+    residuals = problem.residuals(fitted, problem.y, prior) / problem.reference
+    jacobian = problem.jacobian(fitted, problem.y, prior) / problem.reference * problem.steps
+    df = len(problem.points) - len(problem.free)
+    errors = np.concatenate([np.full(len(problem.points), residuals @ residuals / df), np.ones(problem.priors)])
+    inverse = np.linalg.pinv(jacobian) * problem.steps[:, None]
+    found: Array = (inverse * errors) @ inverse.T
+    free = len(problem.free)
+    return 0.5 * (found + found.T)[:free, :free]
+
+
 def without_cells(problem: FitProblem, fitted: Array, cells: Sequence[int]) -> tuple[list[tuple[int, float]], int]:
     """Return place and predicted coefficient of each condition from a fit without its cell, and how many cells stay in.
 

@@ -38,7 +38,7 @@ class DataFile:
 class MaterialFile:
     """A material's file as read."""
 
-    role: Role
+    role: Role | Literal["law"]
     name: str
     """Name in recipes."""
     path: Path

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import cast
+from typing import Final, cast
 
 from drivers.profiles import DeviceProfile, ProfileError, load_profile, profile_names, read_profile
 from sim.physics.laws import LawMaker, OfMaterials
@@ -33,12 +33,17 @@ def extension_drive(name: str) -> str:
 
 
 def find_beside(tree: Tree, folder: Path) -> None:
-    """Resolve paths of profiles relative to a rig file's folder, where they lead to a file there.
+    """Resolve paths of profiles and laws relative to a rig file's folder, where they lead to a file there.
 
     Any other path stays unchanged: it is relative to the working folder.
     """
     if not isinstance(tree.data, dict):
         return  # the reader of the rig file reports it
+    for section_key, key in LAW_KEYS:
+        section = tree.data.get(section_key)
+        law = section.get(key) if isinstance(section, dict) else None
+        if isinstance(section, dict) and isinstance(law, str) and is_law_file(law) and (folder / law).is_file():
+            section[key] = str((folder / law).resolve())
     for key in ("devices", "axes"):
         section = tree.data.get(key)
         for part in section.values() if isinstance(section, dict) else ():
@@ -53,11 +58,24 @@ def _find_beside(part: dict[str, Value], folder: Path) -> None:
         part["profile"] = str((folder / name).resolve())
 
 
-def extension_law(name: str) -> LawMaker | None:
-    """Return the law of an extension of the group ``laws``, None where there is none of this name.
+LAW_KEYS: Final = (("sim", "friction_model"), ("sim", "law"))
+"""Keys of a rig file that name a law of friction."""
 
-    Raises PluginError for an extension that is not allowed, cannot be loaded or is no law.
+
+def is_law_file(name: str) -> bool:
+    """Return whether the name of a law is that of a kept law's file."""
+    return name.endswith((".yaml", ".yml"))
+
+
+def extension_law(name: str) -> LawMaker | None:
+    """Return the law of a kept law's file or of an extension of the group ``laws``, None where there is none.
+
+    Raises PluginError for an extension that is not allowed, cannot be loaded or is no law, InvalidSource for a file.
     """
+    if is_law_file(name):
+        from tester.inputs.kept_laws.law_value import load_law  # needs pydantic
+
+        return load_law(Path(name)).of
     if ":" not in name and name not in plugins().names("laws"):
         return None
     maker = plugins().load("laws", name)

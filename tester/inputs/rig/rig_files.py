@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from copy import deepcopy
 from functools import cache
+from pathlib import Path
 from typing import TypeVar
 
 from drivers.drives import reader
@@ -14,7 +15,7 @@ from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
 from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
 from tester.inputs.rig.packaged import complete, new_tree, resolve
-from tester.inputs.rig.profiles import extension_drive, extension_law
+from tester.inputs.rig.profiles import LAW_KEYS, extension_drive, extension_law, is_law_file
 from tester.inputs.rig.risks import Risk, apart, beyond, counts_as_simulated, loosened, redescribed
 
 OneRig = TypeVar("OneRig", bound=Rig)
@@ -128,7 +129,9 @@ def _override(tree: Tree, text: str, number: int) -> list[Problem]:
         # A section that refuses a value is reported at its own place: that must lead to the override as well.
         tree.positions[here] = tree.keys[here] = (-1 - number, 1)
         if depth == len(keys) - 1:
-            section[key] = value
+            # Absolute: a run records it, and resumes from any folder.
+            law_file = tuple(keys) in LAW_KEYS and isinstance(value, str) and is_law_file(value)
+            section[key] = str(Path(value).resolve()) if law_file and isinstance(value, str) else value
             break
         inner = section.setdefault(key, {})
         if not isinstance(inner, dict):

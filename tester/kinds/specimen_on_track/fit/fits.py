@@ -8,9 +8,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from tester.analysis.fit.fit_law import FitError, Law, Sourced
-from tester.analysis.fit.fit_part import FitPart
+from tester.analysis.fit.fit_part import FitPart, LawPlace, Subject
+from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
-from tester.kinds.specimen_on_track.axes import INTERFACES
+from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
 from tester.kinds.specimen_on_track.fit.laws import GRETA, LAWS, OF_MATERIALS, WLF_BELL, reference_band
 from tester.kinds.specimen_on_track.fit.run_data import LOAD, SPEED
 from tester.kinds.specimen_on_track.fit.track_group import group_of
@@ -61,6 +62,15 @@ class TrackFits(FitPart):
             return bound(materials.rubber(wanted.compound), materials.surface(named), figures)
         except (ValueError, InvalidSource) as error:
             raise FitError(f"{group}: {error}") from error
+
+    def subject(self, group: str) -> Subject:
+        return Subject(*group_of(group))
+
+    def place(self, setpoint: Setpoint) -> LawPlace | None:
+        """Return the variables at a setpoint; the surface is that of the axis, "" for the run's."""
+        held = held_by(setpoint)
+        subject = Subject(setpoint.compound, held.interface, held.surface)
+        return LawPlace(subject, held.temperature_c, held.load_n, held.track_m_s)
 
     def _with_glass(self, law: Law, compound: str) -> Law:
         """Return the bell; the band of its t_ref comes from the glass transition in a compound's file."""

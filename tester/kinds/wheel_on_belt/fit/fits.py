@@ -9,7 +9,7 @@ from typing import Final
 from sim.physics.friction import MODEL_NAMES, UnknownCompoundError
 from sim.physics.slip import caveats, predict
 from tester.analysis.fit.fit_law import Sourced
-from tester.analysis.fit.fit_part import FitPart, PublishedTable
+from tester.analysis.fit.fit_part import FitPart, LawPlace, PublishedTable, Subject
 from tester.base.axes import Setpoint
 from tester.kinds.wheel_on_belt.fit.data import APPENDICES, READABLE, appendix, rows
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, LOAD, SLIP
@@ -52,6 +52,12 @@ class WheelFits(FitPart):
         held = held_by(setpoint)
         at = abs(held.slip_velocity_m_s), held.load_n, held.temperature_c, held.sideslip_deg
         return [*caveats(held.compound, *at)]
+
+    def place(self, setpoint: Setpoint) -> LawPlace | None:
+        held = held_by(setpoint)
+        angled = any(held.positions.values())
+        at = held.temperature_c, held.load_n, abs(held.slip_velocity_m_s)
+        return None if angled else LawPlace(Subject(held.compound), *at)
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Return a law over setpoints, NaN for compounds outside the paper; raises KeyError for an unknown law."""
