@@ -64,7 +64,7 @@ def test_array_version_equals_the_scalar_one(compound: str, model: str) -> None:
     fast = FrictionModel(compound, model)
     for i, j, k in np.ndindex(3, 2, 3):
         expected = many[i, j, k]
-        assert fast.mu(t[i, 0, 0], p[0, j, 0], v[k]) == pytest.approx(expected, rel=1e-12)
+        assert fast.mu(t[i, 0, 0], p[0, j, 0], float(v[k])) == pytest.approx(expected, rel=1e-12)
 
 
 def test_evaluate_takes_any_parameters() -> None:

@@ -19,7 +19,9 @@ from tester.kinds.wheel_on_belt.fit.fits import FITS
 from tester.kinds.wheel_on_belt.fit.laws import PAPER, V2_LAW
 from tester.kinds.wheel_on_belt.fit.run_data import run_points
 from tests.campaigns.fit.synthetic import DESIGN
+from tests.tester.inputs.kept_laws.kept_example import example_text
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
+from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 
 pytest.importorskip("scipy", reason="needs the extra `report`")
@@ -110,6 +112,21 @@ def test_figures_draw_it(home: Path, capsys: pytest.CaptureFixture[str]) -> None
     done(capsys, "figure", "one", "--law", "law.yaml", "--name", "load-by-temperature")
     made_track_run(home / "runs" / "track")
     assert "not specimen_on_track" in done(capsys, "figure", "track", "--law", "law.yaml", code=2)[1]
+
+
+def test_a_simulated_wheel_rubs_by_it_and_keeps_its_file(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (home / "law.yaml").write_text(example_text(compound="1#"), encoding="utf-8")
+    (home / "r.yaml").write_text(SHORT, encoding="utf-8")
+    quiet = [f"--set=sim.{name}=0" for name in ("noise", "scatter", "running_in")]
+    done(capsys, "run", "r.yaml", "--set", "sim.friction_model=law.yaml", *quiet, "--yes")
+    run = json.loads(done(capsys, "show", "latest", "--json")[0])
+    (law,) = (one for one in run["materials"] if one["role"] == "law")
+    assert (law["name"], law["file"]) == ("1#", "laws/law.yaml")
+    (table,) = home.glob("runs/*/appendix.csv")
+    assert table.read_text(encoding="utf-8").splitlines()[1].endswith(",0.6")
+    (home / "r.yaml").write_text(SHORT.replace("1#", "2#"), encoding="utf-8")
+    told = done(capsys, "check", "r.yaml", "--set", "sim.friction_model=law.yaml", code=3)[1]
+    assert "law.yaml is the law of '1#', not of '2#'" in told
 
 
 def test_a_schema_for_editors(capsys: pytest.CaptureFixture[str]) -> None:
