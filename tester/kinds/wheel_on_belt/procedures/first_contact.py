@@ -13,6 +13,7 @@ from typing import Final
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
+from tester.kinds.wheel_on_belt.recipe.twin_law import CLEAR_SHARE, LEAST_N
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
 
@@ -21,10 +22,6 @@ SETTLE_S: Final = 0.4
 """Time from the belt's new speed to the first reading that counts, s [A]: its ramp, and the build-up of the contact."""
 AVERAGE_S: Final = 0.6
 """Averaging time of friction, s [A]: about one turn of the runout at 0.4 m/s."""
-CLEAR_SHARE: Final = 0.1
-"""Friction of more than this share of the load has a sign [A]: the least coefficient of the paper's tests is 0.5."""
-LEAST_N: Final = 1.0
-"""... and also of more than this [A]: noise, cross-talk, and drift of the zero since the tare."""
 TOUCH_AT_MOST_S: Final = 60.0
 """Longest time for a first touch, s [A]; after it the wheel is not found."""
 

@@ -7,7 +7,7 @@ from difflib import get_close_matches
 from itertools import product
 from math import isfinite
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from sim.physics.friction import KNOWN, MODEL_NAMES, UnknownCompoundError
 from sim.physics.laws import NO_SETTING
@@ -17,11 +17,15 @@ from tester.base.source import InvalidSource, Problem, Tree
 from tester.base.units import shown
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.recipe_schema import Recipe
-from tester.kinds.wheel_on_belt.procedures.first_contact import CLEAR_SHARE, LEAST_N
 
-CLEAR = 1.2
+CLEAR_SHARE: Final = 0.1
+"""In the first contact friction of more than this share of the load has a sign [A]: the least coefficient of the
+paper's tests is 0.5."""
+LEAST_N: Final = 1.0
+"""... and also of more than this [A]: noise, cross-talk, and drift of the zero since the tare."""
+CLEAR: Final = 1.2
 """Friction expected in the first contact, over the least that counts [A]: a new contact has 10 % less."""
-EACH_K = 10.0
+EACH_K: Final = 10.0
 """Distance of the temperatures at which a law is tried, K [A]: a bell of a compound is some 20 K wide."""
 
 if TYPE_CHECKING:
