@@ -123,7 +123,7 @@ def test_a_simulated_wheel_rubs_by_it_and_keeps_its_file(home: Path, capsys: pyt
     (law,) = (one for one in run["materials"] if one["role"] == "law")
     assert (law["name"], law["file"]) == ("1#", "laws/law.yaml")
     (table,) = home.glob("runs/*/appendix.csv")
-    assert table.read_text(encoding="utf-8").splitlines()[1].endswith(",0.6")
+    assert table.read_text(encoding="utf-8").splitlines()[1].endswith(",0.60")
     (home / "r.yaml").write_text(SHORT.replace("1#", "2#"), encoding="utf-8")
     told = done(capsys, "check", "r.yaml", "--set", "sim.friction_model=law.yaml", code=3)[1]
     assert "law.yaml is the law of '1#', not of '2#'" in told
