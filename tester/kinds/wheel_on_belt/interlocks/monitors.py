@@ -34,7 +34,8 @@ class JacketMonitor:
     off_since_s: float = inf
     """Time since which no heat has been commanded, or the output has been zero."""
     coolest_c: float = -inf
-    """The coolest valid reading since the last output; -inf while there is output."""
+    """The coolest valid reading since the last output, and since the rubber was last hotter; -inf while there is
+    output."""
     weak_since_s: float = inf
     """Time since which the output has been high with the hub well below its setpoint."""
     weak_from_c: float = nan
@@ -64,7 +65,8 @@ class JacketMonitor:
         self.hub_c = hub
         if not r.heat_percent <= 0.0:
             self.coolest_c = -inf
-        elif self.coolest_c == -inf or hub < self.coolest_c:
+        elif self.coolest_c == -inf or hub < self.coolest_c or (r.surface_valid and r.surface_c > hub):
+            # Hotter rubber warms the hub, which then cools more slowly than the rubber does.
             self.coolest_c = hub
         self._follow_rate(stamp, hub, dt)
         self._watch_line(r, heat, setpoint_c)

@@ -585,6 +585,29 @@ def test_a_hub_that_a_hotter_rubber_warms_is_no_runaway(bench: Bench) -> None:
     assert bench.state.trip is None and bench.readings.hub_c < bench.readings.surface_c
 
 
+def test_a_hub_that_friction_has_warmed_may_cool_more_slowly_than_the_rubber(bench: Bench) -> None:
+    _long_off(bench, 23.0)
+    readings = bench.readings
+    while readings.hub_c < 36.0:
+        readings.hub_c += 0.004
+        bench.scan(0.1)
+    for _ in range(1500):
+        readings.surface_c = max(readings.surface_c - 0.02, 24.0)
+        _model(0.0)(bench)
+        readings.hub_c -= 0.002
+        bench.scan(0.1)
+    assert bench.state.trip is None
+    assert readings.hub_c > readings.surface_c + bench.control.rig.interlocks.runaway_k
+    coolest_c = readings.hub_c
+    for _ in range(9000):
+        readings.hub_c += 0.001
+        bench.scan(0.1)
+        if bench.state.trip is not None:
+            break
+    assert bench.state.trip is not None and bench.state.trip.name == "jacket runaway"
+    assert readings.hub_c <= coolest_c + bench.control.rig.interlocks.runaway_k + 0.1
+
+
 def test_a_hotter_rubber_excuses_no_hub_that_is_given_output(bench: Bench) -> None:
     bench.control.view.jacket.forget(bench.readings.now_s)
     bench.readings.surface_c = 60.0
