@@ -50,6 +50,7 @@ WHOLE_MM: Final = 3.0
 LEFT_MM: Final = 2.0
 """Diameter above the least one that a wheel may have when a new one is asked for [A]: a condition at 400 N."""
 LONGEST_S: Final = 30_000.0
+LIMIT_W: Final = RigConfig.of(load_rig("sim", ())).limits.slip_power_w
 RECIPE = """recipe: a wheel's life
 specimens: [{{compound: "{compound}"}}]
 pre_grind: {{wheel_speed: 0.8 m/s, belt_speed: {belt:.3f} m/s, load: {ground:.0f} N, duration: {minutes:.0f} min}}
@@ -87,6 +88,8 @@ class Lived:
     life: Life
     ended: str = ""
     """Trip or failure, or ""."""
+    most_w: float = 0.0
+    """Greatest friction power of the true contact, W."""
     least_mm: float = inf
     lost_mm: float = 0.0
     left_mm: float = nan
@@ -100,6 +103,11 @@ class Lived:
     rate: float = nan
     """Rate in use when half of the life was over; in the end of a short life."""
     reported: bool = False
+
+    @property
+    def overloaded(self) -> bool:
+        """Tell whether the trip was a true one: the compound's friction took the contact beyond the rig's power."""
+        return self.ended.startswith("slip power") and self.most_w > LIMIT_W
 
     @property
     def learnt(self) -> bool:
@@ -192,6 +200,7 @@ class Living:
             self.world.advance(now)
             cold_mm = min(cold_mm, plant.cold_mm) if ctx.wheel.wheel < 2 else cold_mm
             now = next_tick(now, run.tick(now), self.world.urgent_s)
+            lived.most_w = max(lived.most_w, plant.mu * plant.force_z_n * plant.slip_m_s)
             if ctx.burst > 0 and ctx.gate == 0 and ctx.now == run.engine.last_scan_s:
                 self._note_slip(plant.diameter_mm)
             if not self.rates or new_mm - cold_mm > self.rates[-1][0] + 0.01:
@@ -251,8 +260,10 @@ def told(lived: Lived) -> str:
 def figures(all_lived: Sequence[Lived]) -> Iterator[Figure]:
     """Yield every figure of the lives."""
     count, valid = len(all_lived), sum(one.valid for one in all_lived)
-    ended = [one.ended for one in all_lived if one.ended]
-    yield holds("lives without a trip", not ended, f"{count - len(ended)} of {count} {ended or ''}", "all")
+    ended = [one.ended for one in all_lived if one.ended and not one.overloaded]
+    yield holds("lives without a false trip", not ended, f"{count - len(ended)} of {count} {ended or ''}", "all")
+    over = sum(one.overloaded for one in all_lived)
+    yield at_most(f"lives that friction power above {LIMIT_W:g} W ended, truly", over, max(1, count // 20), digits=0)
     config = RigConfig.of(load_rig("sim", ()))
     least_mm = min(one.least_mm for one in all_lived)
     yield at_least("least diameter of a wheel, mm", least_mm, config.interlocks.least_diameter_mm)
