@@ -128,7 +128,7 @@ class WheelRig(SimRig):
         return self.plant.parameters.ambient
 
     @property
-    def of_materials(self) -> bool:
+    def by_surface(self) -> bool:
         """Return True: a compound outside the paper rubs by its file."""
         return True
 

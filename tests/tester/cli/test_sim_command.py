@@ -77,5 +77,5 @@ def test_a_taken_port_is_told(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 def test_an_unknown_compound_is_refused(capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["sim", "--compound", "9#"]) == 2
+    assert invoke(["sim", "--rig", "grosch", "--compound", "9#"]) == 2
     assert "9#" in capsys.readouterr().err

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias
 
 from tester.inputs.recipe.plan import ConditionStep, Mounted, Plan, PromptStep, Settings, Step
+from tester.kinds.wheel_on_belt.rig.sections import HAND_C
 
 WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
 """Diameter check after a condition: not at all, by rolling at zero slip, or measured by a person."""
@@ -109,7 +110,7 @@ class Cool(Step):
     """Turn unloaded, without heat, until the hub is below ``hub_below_c`` [A] and safe to touch."""
 
     kind: ClassVar[str] = "cool"
-    hub_below_c: float = 45.0
+    hub_below_c: float = HAND_C
 
     @property
     def title(self) -> str:

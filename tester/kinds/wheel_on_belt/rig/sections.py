@@ -65,6 +65,10 @@ _RUNAWAY: Final = Bounded(
 )  # fmt: skip
 
 
+HAND_C: Final = 45.0
+"""A hub that a hand may touch, degC [A]."""
+
+
 @dataclass(frozen=True, slots=True)
 class _LimitsConfig:
     """Hard limits: no recipe and no loop exceeds them."""

@@ -27,6 +27,7 @@ from tester.kinds.wheel_on_belt.interlocks.surface import STALE_IR_S
 from tester.kinds.wheel_on_belt.interlocks.table import TABLE
 from tester.kinds.wheel_on_belt.rig.loop_sections import GatesConfig, LoopsConfig
 from tester.kinds.wheel_on_belt.rig.sections import (
+    HAND_C,
     HARMFUL_N,
     VELOCITY_AXES,
     ArmingConfig,
@@ -181,7 +182,7 @@ def _temperatures(rig: RigConfig) -> _Found:
         yield ("loops", "heat", "hub_max"), f"{heat.hub_max_c:g} degC is above limits.jacket"
     if heat.hub_min_c >= heat.hub_max_c:
         yield ("loops", "heat", "hub_min"), "is not below hub_max"
-    if rig.limits.tool_hub_c > rig.interlocks.cooldown_hub_c:
+    if rig.limits.tool_hub_c > max(rig.interlocks.cooldown_hub_c, HAND_C):
         message = f"{rig.limits.tool_hub_c:g} degC is above interlocks.cooldown_hub: the wheel would stand, and bake"
         yield ("limits", "tool_hub"), message
 

@@ -112,9 +112,14 @@ def test_camber_alone_does_not_change_the_friction() -> None:
     assert tilted.friction_j / tilted.sliding_m == pytest.approx(straight.friction_j / straight.sliding_m, rel=1e-9)
 
 
-def test_a_compound_without_a_model_is_estimated_with_a_round_coefficient() -> None:
-    unknown = condition(MILD.but("EPDM"), replace(CONSTANTS, unknown_mu=0.5))
-    assert unknown.friction_j == pytest.approx(unknown.sliding_m * 200.0 * 0.5)
+def test_a_compound_without_a_model_is_estimated_with_a_round_coefficient_on_a_real_rig() -> None:
+    costs = WheelEstimator(real_rig(), replace(CONSTANTS, unknown_mu=0.5)).costs
+    assert costs.mu("EPDM", 40.0, 200.0, 0.3, 0.0) == 0.5
+    assert costs.mu("1#", 40.0, 200.0, 0.3, 0.0) != 0.5
+
+
+def test_a_simulated_rig_rubs_an_unknown_compound_by_the_assumed_law() -> None:
+    assert condition(MILD.but("EPDM")).friction_j == pytest.approx(condition(MILD).friction_j)
 
 
 def test_a_person_takes_time_on_a_real_rig_only() -> None:
