@@ -1,7 +1,7 @@
-"""The law by which a compound rubs on the simulated wheel's belt.
+"""A compound's law of friction on the simulated wheel's belt.
 
-The laws ``paper`` and ``v2`` know the paper's three compounds; any other compound rubs by the law in its file. A file
-without one, or no file, leaves the law unknown: the compound then rubs as ``ASSUMED`` does, and ``assumed`` states so.
+The laws ``paper`` and ``v2`` know the paper's three compounds; any other compound takes the law in its file. A file
+without one, or no file, leaves the law unknown: the compound then takes that of ``ASSUMED``, and ``assumed`` states so.
 A law of another name that the rig file chooses is the law of every compound, with the figures of a compound's file
 where that states the same law. A law of materials is made of the compound's modulus and the recipe's surface.
 """

@@ -1,5 +1,5 @@
 """Material files of a recipe: finds those of its compounds and surface, copies them to the run's folder, records them.
-A kept law by which a simulated rig rubs is kept with them.
+A kept law that a simulated rig uses is copied with them.
 
 In the run's folder the copies have the same places next to the recipe as the originals have, so that a reader of that
 recipe finds the copies first. A name without a file remains only a name.
@@ -77,7 +77,7 @@ def used_materials(recipe: Recipe, path: Path, leave_out: Iterable[str] = ()) ->
 
 
 def law_file(rig: Rig) -> tuple[MaterialFile, ...]:
-    """Return the file of the kept law by which a simulated rig rubs; none for another law. Raises InvalidSource."""
+    """Return the file of the kept law that a simulated rig uses; none for another law. Raises InvalidSource."""
     named = [str(getattr(rig.plant, key, "")) for _, key in LAW_KEYS]
     files = [Path(name) for name in named if is_law_file(name)] if rig.simulated else []
     return tuple(_law_file(path) for path in files)

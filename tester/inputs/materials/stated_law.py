@@ -1,4 +1,4 @@
-"""The section ``law`` of a compound's file: by which law it rubs on the belt of a simulated wheel."""
+"""The section ``law`` of a compound's file: its law of friction on the belt of a simulated wheel."""
 
 from __future__ import annotations
 

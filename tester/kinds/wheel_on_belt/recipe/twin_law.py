@@ -1,4 +1,4 @@
-"""The law by which a compound of a recipe rubs on the simulated wheel, as far as a plan and its checks need it."""
+"""The simulated wheel's law of friction for a compound of a recipe, as far as a plan and its checks need it."""
 
 from __future__ import annotations
 
