@@ -74,7 +74,8 @@ def files_naming(name: str, root: Path = ROOT) -> list[Path]:
         for path in sorted((root / folder).rglob("*.py")):
             if path.relative_to(root).as_posix() in FROZEN:
                 continue
-            if any(wanted.search(word) for word in words_in(path.read_text("utf-8"))):
+            source = path.read_text("utf-8")
+            if wanted.search(source) and any(wanted.search(word) for word in words_in(source)):
                 found.append(path.relative_to(root))
     return found
 

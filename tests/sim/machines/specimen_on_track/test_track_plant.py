@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 from math import exp
@@ -10,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from sim.machines.specimen_on_track.plant import TrackPlant
+from sim.physics import tabulated, track
 from sim.physics.laws import LawSetting, make, with_parts
 from sim.physics.materials import Rubber, Surface
 from sim.physics.track import TrackContact, TrackParameters
@@ -108,9 +110,14 @@ def on_track(law: str, tables: Path, compound: str = "SBR", **contact: float) ->
 
 
 @pytest.fixture(scope="module")
-def tables(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Tables that the tests of this module share."""
-    return tmp_path_factory.mktemp("tables")
+def tables(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """Tables that the tests of this module share: of the speed and the load that they use, with few points."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(track, "TABLE_M_S", (5e-4, 2e-3))
+        patch.setattr(track, "TABLE_N", (10.0, 40.0))
+        patch.setattr(tabulated, "POINTS", (6, 20, 5))
+        patch.setattr(tabulated, "_EVERYWHERE", 100)
+        yield tmp_path_factory.mktemp("tables")
 
 
 @pytest.mark.parametrize("law", ["persson", "greta"])

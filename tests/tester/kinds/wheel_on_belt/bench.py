@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Sequence
-from copy import deepcopy
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import copysign, cos, hypot, inf, isfinite, radians, sin
 from typing import NamedTuple
 
@@ -146,7 +145,8 @@ class Bench:
     returning_k_s: float = 0.0
     """How fast it goes back to the temperature that is demanded, K/s."""
     demands: list[Demand] = field(default_factory=list[Demand])
-    """The demand of every scan, when it left."""
+    """The demand of every scan, when it left; equal ones in turn are one object."""
+    _demand: Demand = field(default_factory=Demand)
 
     @property
     def now(self) -> float:
@@ -166,7 +166,9 @@ class Bench:
         ctx.gate = ctx.gates.update(r, dt)
         done = activity.step(ctx)
         self.sampler.record(ctx, Setpoints())
-        self.demands.append(deepcopy(ctx.demand))
+        if not self.demands or self.demands[-1] != ctx.demand:
+            self._demand = replace(ctx.demand, positions=dict(ctx.demand.positions))
+        self.demands.append(self._demand)
         return done
 
     def run(self, activity: Activity[Context], at_most_s: float = 60.0, dt: float = 0.01) -> float:

@@ -237,8 +237,9 @@ def test_a_grid_without_checks_leaves_the_wheel_unchecked() -> None:
 
 
 def test_a_condition_without_a_check_does_not_take_that_of_the_one_before() -> None:
-    grid = SHORT[SHORT.index("  - name: one") :].replace("one", "two").replace("200 N", "300 N")
-    text = SHORT.replace("repeats: 1", "repeats: 1\n  wear_check: each_condition") + grid + "    wear_check: never\n"
+    short = SHORT.replace("25 degC", "40 degC")
+    grid = short[short.index("  - name: one") :].replace("one", "two").replace("200 N", "300 N")
+    text = short.replace("repeats: 1", "repeats: 1\n  wear_check: each_condition") + grid + "    wear_check: never\n"
     assert between(plan_of(text))[0] == [(1, 0, 0), (1, 0, 1), (1, 1, 0)]
 
 
