@@ -354,14 +354,14 @@ async def planning(place: Place, client: Client, attack: Attack, count: int, con
     with attack(BY_FORCE):
         await asyncio.sleep(SETTLE_S)
         began_s = clock.monotonic()
-        taken = await begun(place, client, order)
+        taken = await begun(place, client, order, PLAN_S)
         await taken
         whole_s = clock.monotonic() - began_s
         await asyncio.to_thread(place.end_for_real)
         await over(place, client, taken)
         began_s = clock.monotonic()
         for number in range(count):
-            taken = await begun(place, client, order)
+            taken = await begun(place, client, order, PLAN_S)
             await asyncio.sleep(whole_s * moment(number, count))
             made += await place.stops(1)
             ends.append(await end_of(place, client, taken, made[-1][0]))
@@ -369,7 +369,7 @@ async def planning(place: Place, client: Client, attack: Attack, count: int, con
             yield figure
     yield holds("planning: it takes, from the order to the run", True, f"{whole_s:.2f} s", "no limit")
     early = sum(end in (REFUSED, AT_ONCE) for end in ends)
-    counts = ", ".join(f"{end} {ends.count(end)}" for end in sorted(set(ends)))
+    counts = f"{conditions} conditions: " + ", ".join(f"{end} {ends.count(end)}" for end in sorted(set(ends)))
     yield holds("planning: STOP before the first scan, and nothing moves", early + ends.count(LATER) == count,
                 counts, f"{REFUSED}, {AT_ONCE} or {LATER}")  # fmt: skip
     yield at_least("planning: tries before the first scan", early, count // 2, "", 0)
@@ -411,6 +411,8 @@ async def over(place: Place, client: Client, order: asyncio.Task[object]) -> Run
     return client.state.run
 
 
+PLAN_S = 1200.0
+"""200,000 conditions are planned by then beside hostile clients, s."""
 TABLES_S = 1200.0
 """Tables of 200,000 conditions are written by then, s."""
 STILL_M_S = 1e-3
@@ -425,12 +427,12 @@ def still(folder: Path) -> bool:
     return all(abs(value) < STILL_M_S for value in turned)
 
 
-async def begun(place: Place, client: Client, action: Action) -> asyncio.Task[object]:
+async def begun(place: Place, client: Client, action: Action, within_s: float = ARM_S) -> asyncio.Task[object]:
     """Give an order although others tear control away; return what waits for its answer. Raises NotReachedError."""
     end_s = clock.monotonic() + ARM_S
     while clock.monotonic() < end_s:
         take = asyncio.create_task(place.take_control(client))
-        order: asyncio.Task[object] = asyncio.create_task(client.command(action, within_s=ARM_S))  # right behind it
+        order: asyncio.Task[object] = asyncio.create_task(client.command(action, within_s=within_s))  # right behind it
         with suppress(RefusedError, TimeoutError):
             await take
         order.add_done_callback(lambda done: done.cancelled() or done.exception())  # whoever gave it may be gone
