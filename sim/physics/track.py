@@ -44,10 +44,14 @@ class TrackContact:
     wet_adhesion: Annotated[float, "1"] = 0.0  # [A] share of the adhesion, by a law that knows it
     talc_adhesion: Annotated[float, "1"] = 0.1  # [A] the same: talc lowers the adhesion much more ...
     talc_hysteresis: Annotated[float, "1"] = 0.9  # [A] ... than the hysteresis (paper S, section 4)
+    pressure_exponent: Annotated[float, "1"] = 0.0  # friction falls with the nominal pressure to this power (paper S,
+    # section 4: up to 0.1 either way for treads, a third for soft rubber on smooth surfaces); 0: none
+    pressure_reference: Annotated[float, "kPa"] = 100.0  # [A] ... and is the law's at this pressure
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        refuse(self, {"static_excess", "wet", "talc", "wet_adhesion", "talc_adhesion", "talc_hysteresis"})
+        shares = {"static_excess", "wet", "talc", "wet_adhesion", "talc_adhesion", "talc_hysteresis"}
+        refuse(self, shares, signed={"pressure_exponent"})
         if self.touch >= self.lift_travel:
             raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
 
@@ -57,6 +61,10 @@ class TrackContact:
         If the law knows its parts, water takes adhesion and leaves hysteresis, and talc takes most of the adhesion and
         little of the hysteresis; otherwise they take a share of all.
         """
+        if self.pressure_exponent:
+            parts = isinstance(law, laws.LawOfParts)
+            reference_n = 1e-3 * self.pressure_reference * self.area
+            law = (PressedParts if parts else Pressed)(law, self.pressure_exponent, reference_n)  # type: ignore[arg-type]
         if interface == "dry":
             return law
         if isinstance(law, laws.LawOfParts):
@@ -64,6 +72,34 @@ class TrackContact:
                 return LessOfParts(law, self.wet_adhesion, 1.0)
             return LessOfParts(law, self.talc_adhesion, self.talc_hysteresis)
         return LessFriction(law, {"wet": self.wet, "talc": self.talc}[interface])
+
+
+class Pressed:
+    """A law's friction that falls with the nominal pressure to a power."""
+
+    def __init__(self, law: laws.FrictionLaw, exponent: float, reference_n: float) -> None:
+        """Take the law, which holds at the reference load, N."""
+        self._law, self._exponent, self._reference_n = law, exponent, reference_n
+
+    def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
+        """Return the coefficient."""
+        return self._law.mu(temperature_c, load_n, slip_m_s) * self.share(load_n)
+
+    def share(self, load_n: float) -> float:
+        """Return the friction as a share of the law's."""
+        return (load_n / self._reference_n) ** -self._exponent if load_n > 0.0 else 1.0
+
+
+class PressedParts(Pressed):
+    """The same of a law that knows its parts: both fall alike."""
+
+    _law: laws.LawOfParts
+
+    def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
+        """Return the parts."""
+        share = self.share(load_n)
+        adhesion, hysteresis = self._law.components(temperature_c, load_n, slip_m_s)
+        return Components(share * adhesion, share * hysteresis)
 
 
 class LessFriction:

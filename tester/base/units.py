@@ -57,7 +57,9 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("an area", "100 mm2", {"mm2": _ONE, "cm2": Fraction(100), "m2": Fraction(10**6)}),
     _Kind("a wave number", "2e4 1/m", {"1/m": _ONE, "1/mm": _K, "1/um": Fraction(10**6)}),
     _Kind("a spectral density of heights", "2.6e-19 m4", {"m4": _ONE}),
-    _Kind("a pressure", "1.2 MPa", {"Pa": _ONE, "kPa": _K, "MPa": Fraction(10**6), "GPa": Fraction(10**9)}),
+    _Kind("a pressure", "1.2 MPa", {
+        "Pa": _ONE, "kPa": _K, "bar": Fraction(10**5), "MPa": Fraction(10**6), "GPa": Fraction(10**9),
+    }),
     _Kind("a frequency", "100 Hz", {"Hz": _ONE, "kHz": _K}),
     _Kind("a power", "200 W", {"W": _ONE, "kW": _K}),
     _Kind("an energy", "40 J", {"J": _ONE, "kJ": _K}),

@@ -150,6 +150,17 @@ def test_water_may_leave_a_share_of_the_adhesion_and_talc_none(tables: Path) -> 
     assert wet.mu == pytest.approx(0.3 * dry.mu + 0.7 * talc.mu, rel=1e-3)
 
 
+@pytest.mark.parametrize("law", ["wlf_bell", "greta"])
+def test_friction_falls_with_the_pressure_to_the_power_put_in(law: str, tables: Path) -> None:
+    """20 N on 50 mm2 are 400 kPa, four times the pressure at which the law holds; wet, both parts fall alike."""
+    for interface in ("dry", "wet"):
+        even, falling = (on_track(law, tables, pressure_exponent=power) for power in (0.0, 0.25))
+        for plant in (even, falling):
+            plant.prepare(interface)  # type: ignore[arg-type]
+            slid(plant, 1e-3, 3.0)
+        assert falling.mu == pytest.approx(4.0**-0.25 * even.mu, rel=1e-3)
+
+
 def test_an_interface_stays_when_another_specimen_is_put_in(tables: Path) -> None:
     plant = on_track("greta", tables)
     plant.prepare("talc")
