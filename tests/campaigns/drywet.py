@@ -3,8 +3,8 @@
 The recipe `pin-on-disc` on its simulated rig, over seeds, with all noise and scatter. Wet, the twin keeps a share of
 the dry friction (`sim.contact.wet`): as shipped in every other seed, others between. `tester components` has to find
 it, dry less wet, within the interval that it states, for both compounds, in 16 of 20 seeds; and the interval has to be
-narrow. Then the same with the law `greta` in the twin, which knows its parts: wet, it keeps the hysteresis, 1 to 2 % of
-the dry friction, and the mean share has to hold the law's.
+narrow. Then the recipe `greta` with the law `greta` in the twin, which knows its parts: wet, it keeps the hysteresis,
+and the mean share has to hold the law's, at the temperatures that were measured, in 18 of 20 seeds.
 """
 
 from __future__ import annotations
@@ -37,10 +37,12 @@ HELD = 0.8
 WIDEST = 0.07
 """Most that the median of the expanded uncertainties of the mean shares may be [A]: a wide one would hold anything."""
 SPEEDS = ("0.05 m/s, 0.1 m/s, 0.2 m/s, 0.3 m/s, 0.5 m/s, 1 m/s", "0.05 m/s, 0.1 m/s, 0.2 m/s")
-GRETA_SEEDS = 5
-GRETA = ("--set", "sim.law=greta", "--set", "interlocks.lost_share=0.0001", "--accept-risk", "hysteresis alone is weak")
-"""Wet, friction of this law is a hundredth of the load, which the packaged limits take for a contact that is lost."""
-GRETA_COMPOUND, GRETA_SURFACE, GRETA_C = "tread", "road", 23.0
+GRETA_HELD = 0.9
+"""Share of seeds that is asked of the recipe `greta`: 18 of 20."""
+GRETA_SET = ("sim.ambient=40", "sim.law=greta", "sim.contact.area=50", "interlocks.lost_share=0.01")
+"""As the recipe's file asks; wet, the coefficient is 0.03, which the packaged limits take for a lost contact."""
+GRETA = (*(part for key in GRETA_SET for part in ("--set", key)), "--accept-risk", "hysteresis alone is weak")
+GRETA_AREA_MM2 = 50.0
 
 
 class Found(NamedTuple):
@@ -62,27 +64,33 @@ class Found(NamedTuple):
 def measure(seed: int, *, sample: bool) -> list[Found]:
     """Run the recipe with a seed and split it."""
     truth = SHARES[seed % len(SHARES)]
-    pairs = pairs_of(seed, ("--set", f"sim.contact.wet={truth:g}"), SPEEDS if sample else ("", ""))
+    pairs = pairs_of("pin-on-disc", seed, ("--set", f"sim.contact.wet={truth:g}"), SPEEDS if sample else ("", ""))
     return [found_of(seed, pairs, mean, truth) for mean in means_of(pairs)]
 
 
-def measure_greta(seed: int) -> list[Found]:
-    """Run the recipe with the compound of two waves and the law `greta`; the truth is the law's mean share."""
-    compounds = ("- compound: SBR\n  - compound: NBR", f"- compound: {GRETA_COMPOUND}")
-    pairs = pairs_of(seed, GRETA, SPEEDS, compounds)
+def measure_greta(seed: int, *, sample: bool) -> list[Found]:
+    """Run the recipe `greta` (a sample: its first compound); the truth is the law's mean share."""
+    changes = [("  - compound: tread soft\n", "")] if sample else []
+    pairs = pairs_of("greta", seed, GRETA, *changes)
     library = Library.beside()
-    law = greta(library.rubber(GRETA_COMPOUND), library.surface(GRETA_SURFACE), {})
-    shares: list[float] = []
-    for one in pairs:
-        held = one.dry.info.setpoint
-        parts = law.components(GRETA_C, held.number("load"), held.number("track_speed"))
-        shares.append(parts.hysteresis / sum(parts))
-    return [found_of(seed, pairs, mean, fmean(shares)) for mean in means_of(pairs)]
+    found: list[Found] = []
+    for mean in means_of(pairs):
+        surface = library.surface("anti-slip tape")
+        law = greta(library.rubber(mean.compound), surface, {"area": GRETA_AREA_MM2})
+        shares: list[float] = []
+        for one in pairs:
+            held = one.dry.info.setpoint
+            if one.dry.info.compound == mean.compound:
+                contact_c = one.dry.result.measured["contact_c"]
+                parts = law.components(contact_c, held.number("load"), held.number("track_speed"))
+                shares.append(parts.hysteresis / sum(parts))
+        found.append(found_of(seed, pairs, mean, fmean(shares)))
+    return found
 
 
-def pairs_of(seed: int, options: tuple[str, ...], *changes: tuple[str, str]) -> list[FilmPair]:
+def pairs_of(name: str, seed: int, options: tuple[str, ...], *changes: tuple[str, str]) -> list[FilmPair]:
     """Run the recipe with some changes of its text; return what was measured dry and wet."""
-    text = Path(recipes.find("pin-on-disc")).read_text(encoding="utf-8")
+    text = Path(recipes.find(name)).read_text(encoding="utf-8")
     for change in changes:
         text = text.replace(*change)
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()) as told:
@@ -128,14 +136,15 @@ def main(arguments: list[str] | None = None) -> int:
     seeds = SAMPLE_SEEDS if read.sample else read.seeds
     with get_context("spawn").Pool(read.jobs) as pool:
         found = [one for own in pool.map(partial(measure, sample=read.sample), range(seeds), 1) for one in own]
-        few = 1 if read.sample else GRETA_SEEDS
-        by_greta = [one for own in pool.map(measure_greta, range(few), 1) for one in own]
+        few = 1 if read.sample else seeds
+        by_greta = [one for own in pool.map(partial(measure_greta, sample=read.sample), range(few), 1) for one in own]
     for one in (*found, *by_greta):
         told = f"share {one.share:.4f} ± {one.expanded:.4f}, put in {one.truth:.3g}"
         print(f"     seed {one.seed}, {one.compound}: {told}; conditions {one.rows[0]} of {one.rows[1]}")
     missed = 0
-    held = sum(one.held for one in by_greta)
-    of_greta = (f"greta: seeds whose interval holds the law's share: {held} of {few} (asked: all)", held == few)
+    held = sum(all(one.held for one in by_greta if one.seed == seed) for seed in range(few))
+    least = -int(-GRETA_HELD * few // 1)
+    of_greta = (f"greta: seeds whose intervals hold the law's share: {held} of {few} (asked: {least})", held >= least)
     for text, met in (*figures(found, seeds), of_greta):
         missed += not met
         print(f"{'ok  ' if met else 'MISS'} {text}", flush=True)

@@ -9,20 +9,25 @@ import pytest
 
 import recipes
 from tester.base.validation import editor_text
-from tester.inputs.recipe.loader import check
+from tester.inputs.recipe.loader import check, load_checked
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.run.kind_lookup import recipe_part
 from tests.tester.inputs.recipe.texts import load_recipe
 
-RIGS = {"grosch": "grosch", "pin-on-disc": "pin-on-disc"}
-"""Rigs of the recipes that are not for the first one."""
+RIGS: dict[str, tuple[str, ...]] = {
+    "greta": ("pin-on-disc", "sim.ambient=40", "sim.law=greta", "sim.contact.area=50", "interlocks.lost_share=0.02"),
+    "grosch": ("grosch",),
+    "pin-on-disc": ("pin-on-disc",),
+    "pressure": ("grosch", "weights=[10, 25, 40, 55, 70]"),
+}
+"""Rigs of the recipes that are not for the first one, with what their files ask to be set."""
 
 
 def test_these_recipes_are_packaged() -> None:
     table2 = ["table2", "table2-load", "table2-sideslip", "table2-slip"]
-    assert recipes.names() == ["grosch", "pin-on-disc", "pre-grind", "quickstart", *table2, "wear"]
+    assert recipes.names() == ["greta", "grosch", "pin-on-disc", "pre-grind", "pressure", "quickstart", *table2, "wear"]
 
 
 @pytest.mark.parametrize("name", ["quickstart", "quickstart.yaml", "recipes/quickstart.yaml"])
@@ -45,13 +50,14 @@ def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are grosch, pin-on-disc, "):
+    with pytest.raises(recipes.UnknownRecipe, match=r"packaged are greta, grosch, pin-on-disc, "):
         recipes.find(name)
 
 
 @pytest.mark.parametrize("name", recipes.names())
 def test_every_packaged_recipe_is_valid_on_its_rig(name: str) -> None:
-    rig = load_rig(RIGS.get(name, "sim"))
+    rig_name, *changes = RIGS.get(name, ("sim",))
+    rig = load_rig(rig_name, changes, accept_risk="hysteresis alone is weak")
     assert check(recipes.find(name), rig, recipe_part(rig)) == []
 
 
@@ -70,6 +76,14 @@ def test_grosch_has_11_temperatures_and_9_speeds_on_each_track_and_friction_heat
         own = [(one.temperature_c, one.track_m_s) for one in held if (one.surface, one.interface) == track]
         assert len(own) == 99 and set(own) == places
     assert part.estimate(plan, rig).not_held == ()
+
+
+def test_the_loads_of_the_pressures_are_weights() -> None:
+    rig_name, *changes = RIGS["pressure"]
+    rig = load_rig(rig_name, changes)
+    part = recipe_part(rig)
+    plan = part.expand(load_checked(recipes.find("pressure"), rig, part).recipe, rig)
+    assert {held_by(step.setpoint).load_n for step in plan.conditions()} == {10.0, 25.0, 40.0, 55.0, 70.0}
 
 
 def test_the_packaged_schema_is_what_tester_schema_prints() -> None:

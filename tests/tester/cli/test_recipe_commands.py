@@ -80,7 +80,7 @@ def test_what_is_measured_again_is_not(folder: Path, capsys: pytest.CaptureFixtu
 
 def test_an_unknown_recipe_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["check", "nosuch"]) == 2
-    assert "packaged are grosch, pin-on-disc, pre-grind" in capsys.readouterr().err
+    assert "packaged are greta, grosch, pin-on-disc, pre-grind" in capsys.readouterr().err
 
 
 def test_an_invalid_rig_file_exits_3(folder: Path) -> None:
