@@ -39,14 +39,15 @@ async def figures(folder: Path, tries: int, *, many: bool) -> AsyncIterator[Figu
     with ExitStack() as stack:
         place = Place(folder, stack)
         async with await place.operator() as client:
+            planned = scenes.Planned()
             parts = [
                 scenes.sliding_and_resting(place, client, place.attack, tries),
                 scenes.by_hand(place, client, place.attack, tries),
                 scenes.torn_away(place, client, place.attack, tries),
-                scenes.planning(place, client, place.attack, tries, PLANNED),
+                scenes.planning(place, client, place.attack, tries, PLANNED, planned),
             ]
             if many:
-                parts.append(scenes.planning(place, client, place.attack, max(tries // 10, 1), MANY))
+                parts.append(scenes.planning(place, client, place.attack, max(tries // 10, 1), MANY, planned))
             for scene in parts:
                 async for figure in scene:
                     yield figure
