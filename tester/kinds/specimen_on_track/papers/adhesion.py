@@ -144,7 +144,7 @@ ADHESION_ITEMS: Final = (
     not_attempted("Fig 2", "which scale of roughness makes which friction", "a drawing; `greta` is built so"),
     PaperItem("Table 1", "scales of a road's texture", "tester materials show road", _texture),
     not_attempted("Figs 3, 4", "volume of the tread; scan of a road and its two waves",
-                  "no scan is printed; finding two waves in a scan is not built here"),
+                  "no scan is printed; of a scan of one's own `tester materials show` finds the two waves"),
     PaperItem("Results", "the road: 9.9 mm, Ra 0.8 mm; fine waves of a hundredth", "tester materials show road", _road),
     PaperItem("Eqs 3 to 7", "stress of a harmonic strain; E', E'', tan d, E", "tester materials show tread", _cycle),
     PaperItem("Fig 5", "E' falls with temperature and rises with frequency, tan d has a maximum",

@@ -231,9 +231,11 @@ GROSCH_ITEMS: Final = (
     PaperItem("4", "0.15 mm is about the spacing of the grains, 0.14 mm", "", _grains),
     PaperItem("4", "no influence of pressure up to 55 kPa", PREDICT, _light),
     not_attempted("4", "exponents of the load from -0.1 to 0.1, and -1/3 of simple theory",
-                  "contact of single asperities is not modelled"),
+                  "contact of single asperities is not modelled; the simulated friction falls with pressure to a power"
+                  " that is put in"),
     not_attempted("4, Fig 8", "a racing tread on granite: mu falls from 1 to 7 bar",
-                  "compound and granite are not printed; what `persson` gives over these pressures is below"),
+                  "compound and granite are not printed; recipe `pressure` makes the test, and what `persson` gives is"
+                  " below"),
     not_attempted("Fig 9", "an analyser of vibrations",
                   "a photograph; `tester materials import dma` reads what such write"),
     PaperItem("Fig 10", "glass is three orders of magnitude stiffer than rubber", "tester materials show SBR", _glassy),

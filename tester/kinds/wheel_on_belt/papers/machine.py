@@ -139,5 +139,5 @@ DRAWINGS: Final = (
     not_attempted("Fig 12", "print of the wheel at five temperatures",
                   "photographs without areas; no sensor of the print"),
     not_attempted("Fig 13", "deformation of the wheel over temperature, nearly constant from 55 degC",
-                  "no values are printed; the twin's softening is an assumption and off"),
+                  "no values are printed; `tester figure RUN` draws it; the twin's softening is an assumption and off"),
 )  # fmt: skip
