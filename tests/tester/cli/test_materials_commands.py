@@ -52,7 +52,7 @@ def test_list_tells_a_file_without_a_name(folder: Path, capsys: pytest.CaptureFi
 def test_show_says_what_a_file_holds_and_its_hash(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["materials", "show", "tread"]) == 0
     out = capsys.readouterr().out
-    assert "holds    measured, 251 points, -100 to 150 degC, 1 Hz" in out
+    assert "holds    measured, 261 points, -110 to 150 degC, 1 Hz" in out
     assert "data     tread.csv, sha256 " in out
     assert invoke(["materials", "show", "tread", "--json"]) == 0
     (one,) = json.loads(capsys.readouterr().out)
