@@ -28,6 +28,7 @@ from tester.inputs.materials.library import Library
 from tester.results.components_table import FilmPair, SharesMean, film_pairs, means_of
 from tester.results.run_results import results_of
 from tester.store.run_reader import RunReader
+from tests.recipes.asked import asked_by
 
 SEEDS, SAMPLE_SEEDS = 20, 3
 SHARES = (0.6, 0.35, 0.6, 0.8)
@@ -39,10 +40,10 @@ WIDEST = 0.07
 SPEEDS = ("0.05 m/s, 0.1 m/s, 0.2 m/s, 0.3 m/s, 0.5 m/s, 1 m/s", "0.05 m/s, 0.1 m/s, 0.2 m/s")
 GRETA_HELD = 0.9
 """Share of seeds that is asked of the recipe `greta`: 18 of 20."""
-GRETA_SET = ("sim.ambient=40", "sim.law=greta", "sim.contact.area=50", "interlocks.lost_share=0.01")
-"""As the recipe's file asks; wet, the coefficient is 0.03, which the packaged limits take for a lost contact."""
+GRETA_SET = asked_by("greta")[1]
+"""Wet, the coefficient is 0.03, which the packaged limits take for a lost contact."""
 GRETA = (*(part for key in GRETA_SET for part in ("--set", key)), "--accept-risk", "hysteresis alone is weak")
-GRETA_AREA_MM2 = 50.0
+GRETA_AREA_MM2 = next(float(key.partition("=")[2]) for key in GRETA_SET if key.startswith("sim.contact.area"))
 
 
 class Found(NamedTuple):

@@ -14,15 +14,8 @@ from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.wheel_on_belt.recipe.part import PART
 from tester.run.kind_lookup import recipe_part
+from tests.recipes.asked import asked_by
 from tests.tester.inputs.recipe.texts import load_recipe
-
-RIGS: dict[str, tuple[str, ...]] = {
-    "greta": ("pin-on-disc", "sim.ambient=40", "sim.law=greta", "sim.contact.area=50", "interlocks.lost_share=0.02"),
-    "grosch": ("grosch",),
-    "pin-on-disc": ("pin-on-disc",),
-    "pressure": ("grosch", "weights=[10, 25, 40, 55, 70]"),
-}
-"""Rigs of the recipes that are not for the first one, with what their files ask to be set."""
 
 
 def test_these_recipes_are_packaged() -> None:
@@ -55,8 +48,8 @@ def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
 
 
 @pytest.mark.parametrize("name", recipes.names())
-def test_every_packaged_recipe_is_valid_on_its_rig(name: str) -> None:
-    rig_name, *changes = RIGS.get(name, ("sim",))
+def test_every_packaged_recipe_is_valid_on_the_rig_that_its_file_asks_for(name: str) -> None:
+    rig_name, changes = asked_by(name)
     rig = load_rig(rig_name, changes, accept_risk="hysteresis alone is weak")
     assert check(recipes.find(name), rig, recipe_part(rig)) == []
 
@@ -79,7 +72,7 @@ def test_grosch_has_11_temperatures_and_9_speeds_on_each_track_and_friction_heat
 
 
 def test_the_loads_of_the_pressures_are_weights() -> None:
-    rig_name, *changes = RIGS["pressure"]
+    rig_name, changes = asked_by("pressure")
     rig = load_rig(rig_name, changes)
     part = recipe_part(rig)
     plan = part.expand(load_checked(recipes.find("pressure"), rig, part).recipe, rig)
