@@ -17,6 +17,7 @@ from tester.base.axes import AxisValue, Setpoint, condition_words
 from tester.inputs.recipe.plan import Settings
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, OrderModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
+from tester.inputs.recipe.specimen_section import specimen_metadata
 
 MERGED_SHOWN: Final = 3
 """Most conditions that a sentence about two grids lists; it counts the rest."""
@@ -134,6 +135,7 @@ def metadata_of(recipe: Recipe) -> dict[str, str]:
         result[AREA_MM2] = f"{recipe.contact.area:g}"
         if recipe.contact.source:
             result[AREA_SOURCE] = recipe.contact.source
+    result |= specimen_metadata(recipe)
     if recipe.humidity is not None:
         result["humidity_percent"] = f"{recipe.humidity:g}"
     if recipe.ambient is not None:

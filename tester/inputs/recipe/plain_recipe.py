@@ -17,10 +17,11 @@ from tester.base.source import Problem, Tree
 from tester.base.units import show
 from tester.inputs.recipe.axis_lists import readable
 from tester.inputs.recipe.conditions import Condition, conditions_of, metadata_of, ordered
-from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Specimen, Stand, Step
+from tester.inputs.recipe.plan import ConditionStep, Plan, Settings, Stand, Step
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.repeats_section import expected
+from tester.inputs.recipe.specimen_section import specimens_of
 from tester.inputs.recipe.time_estimate import Estimator, StepEstimate
 from tester.inputs.rig import Rig
 from tester.inputs.rig.rig_keys import value_at
@@ -101,15 +102,12 @@ class SpecimenPart(RecipePart):
         conditions = conditions_of(recipe, self.settings)
         turns = self.in_turns(conditions) if conditions else ()
         block_value = self.axes.number_of(self.axes.blocks)
-        specimens = tuple(
-            Specimen(i, specimen_model.compound, specimen_model.note)
-            for i, specimen_model in enumerate(recipe.specimens, start=1)
-        )
+        specimens = specimens_of(recipe)
         steps: list[Step] = []
         numbers = count(1)
         pieces = product(specimens, range(1, recipe.replicates + 1))
         for piece, (specimen, replicate) in enumerate(pieces, start=1):
-            steps.append(self.mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.note))
+            steps.append(self.mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.words))
             before: Setpoint | None = None
             for turn in turns:
                 steps += self.before_turn(len(steps), turn[0].values, turn[0].settings, rig)

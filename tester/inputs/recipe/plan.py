@@ -46,6 +46,13 @@ class Specimen:
     index: int
     compound: str
     note: str = ""
+    checks: str = ""
+    """What a person checks when it is put on."""
+
+    @property
+    def words(self) -> str:
+        """Note and checks, for the question."""
+        return "; ".join(text for text in (self.note, f"check: {self.checks}" if self.checks else "") if text)
 
 
 @dataclass(frozen=True, slots=True)

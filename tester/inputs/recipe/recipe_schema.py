@@ -20,6 +20,7 @@ from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_
 from tester.base.validation import Section
 from tester.inputs.recipe.axis_lists import MAX_NAME, Listed
 from tester.inputs.recipe.pressures import PRESSURE, ContactSection
+from tester.inputs.recipe.specimen_section import Checklist, SpecimenModel, wrong_counts
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -97,14 +98,6 @@ FreeField: TypeAlias = Annotated[
     BeforeValidator(_free_field),
     WithJsonSchema({"type": ["string", "number", "boolean"], "maxLength": MAX_FREE_FIELD}),
 ]
-
-
-class SpecimenModel(Section, frozen=True):
-    """A compound to test; each specimen (and each replicate of it) starts on new rubber."""
-
-    compound: Text
-    """name of the rubber compound; 1#, 2#, 3# have a friction model in the simulator"""
-    note: Annotated[str, Field(max_length=500)] = ""
 
 
 class AbrasiveModel(Section, frozen=True):
@@ -292,6 +285,8 @@ class Recipe(Made, frozen=True):
     """a list with one compound each"""
     replicates: Annotated[int, Field(ge=1, le=100)] = 1
     """how often every specimen is tested as a whole, each time on new rubber"""
+    checklist: Checklist = Field(default_factory=list[str])
+    """what a person checks at mounting; the question lists it, and the record keeps question and answer"""
     abrasive: AbrasiveModel | None = None
     contact: ContactSection | None = None
     """area under the rubber, which makes pressures of loads"""
@@ -304,6 +299,13 @@ class Recipe(Made, frozen=True):
     measure: MeasureModel | None = None
     grids: Sequence[GridModel] = ()
     order: OrderModel = OrderModel()
+
+    @model_validator(mode="after")
+    def _one_each(self) -> Recipe:
+        wrong = wrong_counts(self.specimens, self.replicates)
+        if wrong:
+            raise ValueError(wrong)
+        return self
 
 
 @lru_cache

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from tester.base.axes import Setpoint
 from tester.inputs.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
 from tester.inputs.recipe.plan import PromptStep, Specimen
+from tester.inputs.recipe.specimen_section import specimens_of
 from tester.inputs.recipe.time_estimate import StepEstimate
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
@@ -105,9 +106,7 @@ class _Expansion:
     def plan(self) -> WheelPlan:
         """Return the whole plan."""
         recipe = self.recipe
-        specimens = tuple(
-            Specimen(index, model.compound, model.note) for index, model in enumerate(recipe.specimens, start=1)
-        )
+        specimens = specimens_of(recipe)
         for specimen in specimens:
             compound = specimen.compound
             setpoints = [Setpoint(compound, condition.values, recipe.axes) for condition in self.conditions]

@@ -19,6 +19,7 @@ from tester.inputs.recipe.plan import Specimen
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, grid_model
 from tester.inputs.recipe.reference_section import REFERENCE, reference_metadata
 from tester.inputs.recipe.semantics import axis_values
+from tester.inputs.recipe.specimen_section import checks_of
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, WheelStep
 from tester.kinds.wheel_on_belt.recipe.schema import (
     REFERENCE_HELD,
@@ -110,7 +111,8 @@ class ReferenceRounds:
         self.metadata = dict(reference_metadata(asked if self.condition else None))
         if self.reserved is not None and asked is not None:
             compound = asked.compound or recipe.specimens[0].compound
-            self.specimens = (Specimen(len(recipe.specimens) + 1, compound, f"reserved: {self.reserved.name}"),)
+            number, note = len(recipe.specimens) + 1, f"reserved: {self.reserved.name}"
+            self.specimens = (Specimen(number, compound, note, checks_of(recipe)),)
             self.metadata[RESERVED] = self.reserved.name
 
     @property

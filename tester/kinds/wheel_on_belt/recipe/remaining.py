@@ -78,7 +78,7 @@ def _only_prepared(plan: WheelPlan, segment: Sequence[WheelStep], wheel: Mounted
 def _mounted(plan: WheelPlan, wheel: Mounted) -> Install:
     specimen = plan.specimen(wheel.specimen)
     return Install(
-        INSERTED, wheel.specimen, wheel.number, specimen.compound, specimen.note, wheel.replicate, worn=wheel
+        INSERTED, wheel.specimen, wheel.number, specimen.compound, specimen.words, wheel.replicate, worn=wheel
     )
 
 

@@ -47,7 +47,7 @@ def prepare_wheel(
     """
     grind, rest = prepare.pre_grind, prepare.rest
     steps: list[WheelStep] = [Cool(INSERTED)] if cool else []
-    steps.append(Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.note, replicate))
+    steps.append(Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.words, replicate))
     steps += prepare.person_steps
     if grind is not None:
         if cool:
@@ -67,5 +67,5 @@ def mount_again(
 
     ``hub_below_c``: highest hub temperature from which the wheel can be held at ``heat_c``, degC.
     """
-    install = Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.note, replicate, again=True)
+    install = Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.words, replicate, again=True)
     return Cool(INSERTED, min(TOUCH.hub_below_c, hub_below_c)), install, Heat(INSERTED, heat_c)
