@@ -213,7 +213,7 @@ class SpoiledQuantity(_Spoiled):
     def __call__(self) -> float:
         """Return the reading in the channel's unit."""
         true = self.source if isinstance(self.source, float | int) else self.source()
-        return self.spoil(true, self._rig.now_s)
+        return self.spoil(true, self._rig.now_s) if self.active else true
 
 
 def _crossed(kind: str, x: float, y: float, z: float, m: float) -> tuple[float, float, float, float]:
@@ -261,6 +261,31 @@ class SensorFault(Effect):
             self._wrapped.active = False
         elif isinstance(slave, SensorSlave):
             slave.frozen = False
+
+
+class QuantityFault(Effect):
+    """A fault of one channel of a machine's sensor that is neither a load cell nor a thermometer.
+
+    On a rig without the device it has no effect.
+    """
+
+    def __init__(self, device: str, channel: str, kind: str, size: float = 0.0) -> None:
+        """``kind``: of ``spoiled``; ``size``: in the channel's unit, or a second of it."""
+        self._device, self._channel, self._kind, self._size = device, channel, kind, size
+        self._wrong: SpoiledQuantity | None = None
+
+    def begin(self, scene: Scene, now: float) -> None:
+        """Replace the channel's source from now on."""
+        slave = scene.rig.devices.get(self._device)
+        if isinstance(slave, SensorSlave):
+            wrong = SpoiledQuantity(self._kind, self._size, now, scene.rig, f"{self._device} {self._channel}")
+            wrong.source = slave.show(self._channel, wrong)
+            self._wrong = wrong
+
+    def end(self, scene: Scene, now: float) -> None:
+        """Show the true values again."""
+        if self._wrong is not None:
+            self._wrong.active = False
 
 
 @switched

@@ -38,6 +38,11 @@ class TrackContact:
     static_length: Annotated[float, "mm"] = 0.05  # [A] ... which goes with this sliding distance
     lift_travel: Annotated[float, "mm"] = 10.0  # [A] from lowered (0) to raised
     touch: Annotated[float, "mm"] = 1.0  # [A] the arm's position at which specimen and track meet, full load at 0
+    protrusion: Annotated[float, "mm"] = 3.0  # [A] a new specimen is out of its holder by this
+    squeeze: Annotated[float, "N/mm"] = 80.0  # [A] stiffness of the specimen under the load: 5 MPa, 100 mm2, 6 mm
+    expansion: Annotated[float, "mm/K"] = 0.001  # [A] of the specimen: 2e-4 per kelvin, 6 mm
+    wear: Annotated[float, "mm"] = 0.0005  # [A] of the specimen in a metre of sliding
+    runout: Annotated[float, "mm"] = 0.02  # [A] of a disc, to either side
     area: Annotated[float, "mm2"] = 100.0  # [A] nominal, of the specimen on the track: makes a pressure of the load
     wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction, by a law that does not know adhesion
     talc: Annotated[float, "1"] = 0.5  # [A] the same
@@ -50,7 +55,8 @@ class TrackContact:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        shares = {"static_excess", "wet", "talc", "wet_adhesion", "talc_adhesion", "talc_hysteresis"}
+        shares = {"static_excess", "wet", "talc", "wet_adhesion", "talc_adhesion", "talc_hysteresis",
+                  "wear", "runout", "expansion"}  # fmt: skip
         refuse(self, shares, signed={"pressure_exponent"})
         if self.touch >= self.lift_travel:
             raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
@@ -155,6 +161,9 @@ class TrackSensors:
     force_rms: Annotated[float, "N"] = 0.02
     force_zero: Annotated[float, "N"] = 0.5  # greatest offset of a session: what the tare takes off
     force_drift: Annotated[float, "N/K"] = 0.005  # greatest, of the air's temperature against ambient
+    height_rms: Annotated[float, "mm"] = 0.003
+    height_zero: Annotated[float, "mm"] = 0.05  # greatest offset of a session
+    height_drift: Annotated[float, "mm/K"] = 0.0005  # greatest, of the air's temperature against ambient
     air_rms: Annotated[float, "K"] = 0.02
     air_bias: Annotated[float, "K"] = 1.0  # greatest of a session: Pt100 class B, and the air's layers
     air_time: Annotated[float, "s"] = 5.0

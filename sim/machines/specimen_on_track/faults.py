@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from enum import Enum
 from functools import partial
+from math import nan
 from typing import Final
 
 from sim.faults import cabinet, can, common, drives, modbus
@@ -16,7 +17,7 @@ from sim.faults.common import ALWAYS, DRIVES, ENABLED, MAY, RIDE, SCAN_S, TRIP, 
 from sim.faults.kinds import FaultKind
 from sim.faults.language import FaultLanguage
 from sim.faults.scene import Scene, switched
-from sim.faults.sensors import SensorFault, controller_output
+from sim.faults.sensors import QuantityFault, SensorFault, controller_output
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.nodes.motion import VelocityAxis
 
@@ -62,6 +63,18 @@ def track_rubs_otherwise(scene: Scene, on: bool, now: float, percent: float) -> 
 
 
 @switched
+def cell_deaf(scene: Scene, on: bool, now: float) -> None:
+    """The arm's force passes the cell by: it shows its zero and its noise."""
+    scene.machine(TrackRig).plant.deaf = on
+
+
+@switched
+def specimen_lost(scene: Scene, on: bool, now: float, holder_mu: float) -> None:
+    """The specimen leaves its holder, which then grinds on the track with this coefficient."""
+    scene.machine(TrackRig).plant.lose(max(holder_mu, 0.0) if on else nan)
+
+
+@switched
 def end_switch_dead(scene: Scene, on: bool, now: float) -> None:
     """The end switches no longer open the safety chain."""
     scene.machine(TrackRig).switches_work = not on
@@ -69,6 +82,7 @@ def end_switch_dead(scene: Scene, on: bool, now: float) -> None:
 
 _DEVICES: Final = {"load cell": (SLIDING, 0.2 + SCAN_S), "chamber": (TEMPERED, 3.0 + SCAN_S)}
 """For each device: when its readings are needed, and the age at which they are stale plus the row's delay, s."""
+HEIGHT: Final = "height sensor"
 _CELL: Final = partial(SensorFault, "load cell", force="fx")
 
 
@@ -114,12 +128,30 @@ def _device_rows() -> Iterator[FaultKind]:
                         note="recorded, not controlled by")
 
 
+def _contact_rows() -> Iterator[FaultKind]:
+    """Yield a specimen that is lost, a cell that is deaf, and the faults of the sensor of the arm's height."""
+    yield FaultKind("specimen lost", specimen_lost, SLIDING, TRIP, 0.5 + SCAN_S, "", 0.02,
+                    note="its holder slides on a film with this coefficient")
+    yield FaultKind("holder grinds", specimen_lost, SLIDING, TRIP, 0.5 + SCAN_S, "", 0.4,
+                    note="with friction like rubber's: only the arm's height shows it")
+    yield FaultKind("load cell deaf", cell_deaf, SLIDING, TRIP, 0.5 + SCAN_S,
+                    note="it shows its noise, and no force")
+    yield from device_rows(HEIGHT, SLIDING, 0.25 + SCAN_S, (*common.SILENCES, "reset"))
+    yield FaultKind(f"{HEIGHT} frozen", partial(SensorFault, HEIGHT, "frozen"), SLIDING, TRIP, 1.2 + SCAN_S)
+    yield FaultKind(f"{HEIGHT} open", partial(QuantityFault, HEIGHT, "height", "open"), SLIDING, TRIP, 0.3 + SCAN_S)
+    yield FaultKind(f"{HEIGHT} offset", partial(QuantityFault, HEIGHT, "height", "offset"), SLIDING, TRIP,
+                    0.3 + SCAN_S, "mm", 2.0)
+    yield FaultKind(f"{HEIGHT} drift", partial(QuantityFault, HEIGHT, "height", "drift"), SLIDING, TRIP,
+                    3.0, "mm/s", 0.5)
+
+
 def _rows() -> Iterator[FaultKind]:
     yield from _drive_rows()
     yield from common.BUS
     yield FaultKind("CAN frames repeated", can.frames_repeated, ALWAYS, RIDE)
     yield FaultKind("emergency stop pressed", partial(cabinet.emergency_stop, ("track",)), DRIVES, TRIP, SCAN_S)
     yield from _device_rows()
+    yield from _contact_rows()
     yield from common.COMPUTER
 
 

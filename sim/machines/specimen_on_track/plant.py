@@ -6,13 +6,14 @@ track's speed and the specimen's temperature. After a rest it is higher by the s
 with the sliding distance. Air and specimen are one lump of heat each; flashes of temperature at the asperities are not
 modelled. Below some mm/s friction heats nothing: 20 N at 10 mm/s and mu = 2 are 0.4 W, and the specimen's share of that
 warms it by 0.2 K.
+The arm is free of its lift below the touch: it rests on the specimen, or without one on its holder, which grinds.
 Every public attribute is the truth.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
-from math import copysign, exp
+from math import copysign, exp, nan, sin
 from typing import Final
 
 from sim.noise import NormalStream, StickSlip, normal, uniforms
@@ -20,6 +21,8 @@ from sim.physics.laws import NO_SETTING, FrictionLaw, LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.sensors import TemperatureSensor
 
+DISC_RADIUS_MM: Final = 60.0
+"""Radius of the track on a disc, mm [A]."""
 SPECIMEN_SIGMA: Final = 0.03
 REPEAT_SIGMA: Final = 0.02
 """Relative standard deviation of the friction from specimen to specimen, and of one repeat [A]."""
@@ -35,9 +38,12 @@ class TrackPlant:
     """
 
     __slots__ = (
-        "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m",
-        "_specimen", "_stick_slip", "_zero_n", "air_c", "arm_n", "compound", "force_n", "grip", "hung_n", "interface",
-        "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "weights_n",
+        "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed",
+        "_height_drift_mm_k", "_height_noise", "_height_zero_mm", "_since_rest_m",
+        "_specimen", "_stick_slip", "_zero_n", "air_c", "arm_n", "compound", "deaf", "force_n", "grip", "ground_m",
+        "height_mm", "holder_mu", "hung_n", "interface",
+        "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "way_m",
+        "weights_n", "worn_mm",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -53,6 +59,9 @@ class TrackPlant:
         )
         self._air = TemperatureSensor(s.air_time, noise * s.air_rms, noise * s.air_bias * air_bias, unused)
         self._zero_n, self._drift_n_k = noise * s.force_zero * zero, noise * s.force_drift * drift
+        height_zero, height_drift = uniforms(2, seed, "session height")
+        self._height_zero_mm = noise * s.height_zero * height_zero
+        self._height_drift_mm_k = noise * s.height_drift * height_drift
         self.air_c = self.specimen_c = p.ambient
         self._pyrometer.reset(p.ambient)
         self._air.reset(p.ambient)
@@ -75,6 +84,18 @@ class TrackPlant:
         self.hung_n = 0.0
         """Force of a weight that pulls the arm over a pulley, N, above 0 in the direction of the track."""
         self.slid_m = 0.0
+        self.way_m = 0.0
+        """Way of the track."""
+        self.worn_mm = 0.0
+        """Height that the specimen has lost by wear."""
+        self.holder_mu: float = nan
+        """Coefficient of the bare holder on the track; NaN while the specimen is in the holder."""
+        self.deaf = False
+        """Whether the cell has no part in the force: it shows its zero, drift and noise."""
+        self.ground_m = 0.0
+        """Way that the bare holder has slid under load."""
+        self.height_mm = p.contact.lift_travel - p.contact.touch
+        """Height of the arm over that with a new specimen on the track, without load."""
         self.force_n = self.load_n = self.slip_m_s = self.power_w = self.mu = 0.0
         self._since_rest_m = 0.0
         self._place: tuple[int, ...] = ()
@@ -91,7 +112,8 @@ class TrackPlant:
         self._specimen = 1.0 + self.parameters.scatter * SPECIMEN_SIGMA * normal(self._seed, "specimen", specimen)
         self._repeat = 1.0
         self.specimen_c = self.parameters.ambient
-        self.slid_m = 0.0
+        self.slid_m = self.worn_mm = self.ground_m = 0.0
+        self.holder_mu = nan
         self._release()
         self._place = (specimen,)
         self._key_streams()
@@ -138,6 +160,7 @@ class TrackPlant:
     def _key_streams(self) -> None:
         """Start every stream of noise anew at the present place."""
         self._noise = NormalStream(self._seed, "track cell", *self._place)
+        self._height_noise = NormalStream(self._seed, "track height", *self._place)
         self._pyrometer.noise = NormalStream(self._seed, "track pyrometer", *self._place)
         self._air.noise = NormalStream(self._seed, "track air", *self._place)
         if self._stick_slip is not None:
@@ -158,7 +181,27 @@ class TrackPlant:
             self._rub(dt, track_m_s, self._law)
         elif self.force_n != 0.0 or self.load_n != 0.0 or self._since_rest_m != 0.0:
             self._release()
+        self.way_m += track_m_s * dt
+        self.height_mm = self._height(lift_mm)
         self._warm(dt, chamber_percent)
+
+    def lose(self, holder_mu: float) -> None:
+        """Let the specimen come out of its holder, which then grinds with this coefficient; NaN puts it back."""
+        self.holder_mu = holder_mu
+
+    def _height(self, lift_mm: float) -> float:
+        """Return the height of the arm, mm, at a position of its lift."""
+        p, contact = self.parameters, self.parameters.contact
+        carried_mm = lift_mm - contact.touch
+        if carried_mm >= 0.0:
+            return carried_mm
+        rests_mm = -contact.protrusion
+        if self.holder_mu != self.holder_mu and self.compound:
+            grown_mm = contact.expansion * (self.specimen_c - p.ambient) - self.load_n / contact.squeeze
+            rests_mm = max(rests_mm, grown_mm - self.worn_mm)
+        if p.motion == "disc":
+            rests_mm += contact.runout * sin(1e3 * self.way_m / DISC_RADIUS_MM)
+        return rests_mm
 
     def _rub(self, dt: float, track_m_s: float, law: FrictionLaw) -> None:
         """Extend the spring, or slide at the limit."""
@@ -171,6 +214,9 @@ class TrackPlant:
             return
         contact, speed = self.parameters.contact, abs(track_m_s)
         mu = law.mu(self.specimen_c, self.load_n, speed) * self._specimen * self._repeat * self.grip
+        bare = self.holder_mu == self.holder_mu
+        if bare:
+            mu = self.holder_mu
         if self._stick_slip is not None:
             mu *= self._stick_slip.factor(dt)
         stiffness_n_m = 1e3 * contact.stiffness
@@ -190,7 +236,11 @@ class TrackPlant:
         self.force_n = copysign(limit_n, drawn_n)
         slid_m = min(speed * dt, (abs(drawn_n) - limit_n) / stiffness_n_m)
         self._since_rest_m += slid_m
-        self.slid_m += slid_m
+        if bare:
+            self.ground_m += slid_m
+        else:
+            self.slid_m += slid_m
+            self.worn_mm += contact.wear * slid_m
         self.slip_m_s = slid_m / dt
         self.power_w = limit_n * self.slip_m_s
 
@@ -223,11 +273,19 @@ class TrackPlant:
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return the cell's present readings: the tangential force in N as the first of four channels."""
         s = self.parameters.sensors
-        seen_n = self.force_n + self.hung_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
+        seen_n = (0.0 if self.deaf else self.force_n) + self.hung_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
         rms_n = self.parameters.noise * s.force_rms
         if rms_n > 0.0:
             seen_n += rms_n * self._noise.next()
         return min(max(seen_n, -s.force_range), s.force_range), 0.0, 0.0, 0.0
+
+    def height_measured(self) -> float:
+        """Return the present reading of the arm's height, mm."""
+        off_mm = self._height_zero_mm + self._height_drift_mm_k * (self.air_c - self.parameters.ambient)
+        rms_mm = self.parameters.noise * self.parameters.sensors.height_rms
+        if rms_mm > 0.0:
+            off_mm += rms_mm * self._height_noise.next()
+        return self.height_mm + off_mm
 
     def controller_measured_c(self, t: float) -> float:
         """Return the present reading of the chamber's sensor, degC."""

@@ -10,12 +10,12 @@ from math import degrees
 from typing import Final
 
 from drivers.axis import AxisConfig
-from sim.machines.specimen_on_track.plant import TrackPlant
+from sim.machines.specimen_on_track.plant import DISC_RADIUS_MM, TrackPlant
 from sim.nodes.cia402_slave import Cia402Slave
 from sim.nodes.controller_slave import ControllerSlave
 from sim.nodes.modbus_slave import ModbusSlave
 from sim.nodes.motion import PositionAxis, VelocityAxis
-from sim.nodes.sensor_slave import CellSlave, IrSlave
+from sim.nodes.sensor_slave import CellSlave, IrSlave, SensorSlave
 from sim.physics.laws import LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.rig import DeviceSpec, RigSpec, SimRig
@@ -23,13 +23,11 @@ from sim.wires.can_wire import CanWire
 
 TRACK_LAG_S: Final = 0.004
 """Lag of the track behind its velocity command, s [A]."""
-DISC_RADIUS_MM: Final = 60.0
-"""Radius of the track on a disc, mm [A]."""
 TRACK_LEVER_M: Final = 0.05
 """Torque at the track's drive per force at the specimen, m [A]."""
 _METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 """Metres in the track's unit of length."""
-OWN: Final = ("load_cell", "chamber", "pyrometer", "thermometer")
+OWN: Final = ("load_cell", "chamber", "pyrometer", "thermometer", "height_sensor")
 """Keys of the machine's own devices in the wiring; all but the load cell may be missing."""
 
 
@@ -49,8 +47,8 @@ class TrackRig(SimRig):
     """A friction tester with a specimen on a track, on simulated wires.
 
     Drives: track (mm/s or m/s at the specimen), and lift (mm, 0 lowered) unless the arm is moved by hand. Devices by
-    their keys in the wiring: load_cell, and any of chamber, pyrometer, thermometer. The other methods are the actions
-    of the attendant.
+    their keys in the wiring: load_cell, and any of chamber, pyrometer, thermometer, height_sensor. The other methods
+    are the actions of the attendant.
     """
 
     def __init__(
@@ -111,6 +109,8 @@ class TrackRig(SimRig):
             return CellSlave(profile, unit_id, self.plant)
         if name == "chamber":
             return ControllerSlave(profile, unit_id, self.plant)
+        if name == "height_sensor":
+            return SensorSlave(profile, unit_id, {"height": self.plant.height_measured})
         if name == "pyrometer":
             return IrSlave(profile, unit_id, self.plant, sensor_c=self.plant.parameters.ambient)
         return IrSlave(profile, unit_id, AmbientAir(self.plant), sensor_c=self.plant.parameters.ambient)

@@ -221,4 +221,5 @@ def _limits(rig: TrackConfig) -> TrackLimits:
         chamber=rig.chamber,
         air=rig.chamber or "thermometer" in rig.devices,
         exit="pyrometer" in rig.devices,
+        height="height_sensor" in rig.devices,
     )

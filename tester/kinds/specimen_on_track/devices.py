@@ -1,4 +1,4 @@
-"""This machine's devices: track and lift on CAN; load cell, chamber, pyrometer and thermometer on Modbus.
+"""This machine's devices: track and lift on CAN; load cell, chamber, thermometers and the arm's height on Modbus.
 
 ``fill`` copies readings into the process image, ``apply`` hands setpoints to the drivers. No decisions are made here.
 """
@@ -22,6 +22,8 @@ CELL_CHANNELS: Final = ("fx",)
 """Tangential force (N)."""
 SURFACE_CHANNELS: Final = ("surface",)
 """Temperature of the pyrometer's target (degC)."""
+HEIGHT_CHANNELS: Final = ("height",)
+"""Height of the arm (mm)."""
 REPEATED_S: Final = 0.002
 """A place that arrives this soon after another is the same frame again, s [A]: it would show a track at rest."""
 SPEED_S: Final = 0.5
@@ -42,6 +44,7 @@ class TrackDevices(DeviceList):
         self.cell: Sensor = cell
         self.thermometer: Sensor | None = drivers.sensor("thermometer", SURFACE_CHANNELS)
         self.pyrometer: Sensor | None = drivers.sensor("pyrometer", SURFACE_CHANNELS)
+        self.height: Sensor | None = drivers.sensor("height_sensor", HEIGHT_CHANNELS)
         self.chamber: TemperatureController | None = drivers.controller("chamber") if rig.chamber else None
         super().__init__(drivers, (cell.link,))
         self.track: ServoDrive = drivers.drives["track"]
@@ -74,6 +77,10 @@ class TrackDevices(DeviceList):
         r.force_n = cell.values[0]
         r.cell_valid, r.cell_at_s, r.cell_changed_s = cell.valid, cell.stamp_s, cell.changed_s
         r.cell_silent = not cell.ready
+        height = self.height
+        if height is not None:
+            r.height_mm = height.values[0] if height.valid else nan
+            r.height_at_s, r.height_changed_s, r.height_silent = height.stamp_s, height.changed_s, not height.ready
         self._fill_temperatures(r)
 
     def _follow_track(self, stamp_s: float, actual: float) -> None:

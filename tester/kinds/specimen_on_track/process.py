@@ -51,6 +51,12 @@ class TrackReadings(BaseReadings):
     """Output of the chamber, below 0 cooling."""
     chamber_alarm: bool = False
     """The chamber has gone to standby by itself: beyond its own limits, or its lease ran out."""
+    height_mm: float = NAN
+    """Height of the arm by its sensor, 0 with a new specimen on the track; NaN where the sensor denies its reading."""
+    height_silent: bool = False
+    height_at_s: float = NEVER
+    height_changed_s: float = NEVER
+    """When a reading of the height last differed from its predecessor."""
     exit_c: float = NAN
     """Surface of the track behind the contact, by the pyrometer."""
     exit_silent: bool = False
@@ -68,6 +74,8 @@ class TrackReadings(BaseReadings):
         self.cell_changed_s += seconds
         self.air_at_s += seconds
         self.exit_at_s += seconds
+        self.height_at_s += seconds
+        self.height_changed_s += seconds
 
     def drive_stamps_s(self) -> tuple[float, ...]:
         return (self.track_at_s, self.lift_at_s)
@@ -84,6 +92,8 @@ class TrackDemand(BaseDemand):
     """The cell has been tared with this specimen: only then may the track move with the arm down."""
     sliding_m: float = 0.0
     """Way since the track began to move in this direction with the arm down."""
+    least_mu: float = 0.0
+    """Least coefficient that the recipe expects of this contact; 0: it states none."""
     chamber_c: float = NAN
     """Temperature of the air to hold; NaN = chamber off."""
 

@@ -36,6 +36,7 @@ QUANTITIES: Final = Quantities(
         Channel("track_mm", "mm", "Track place", "readings.track_mm", decimals=3),
         Channel("lift_mm", "mm", "Arm", "readings.lift_mm", decimals=2,
                 screen=Screen("lift", 8, "can", _ZERO, Figure("arm.raised_mm", 1.1))),
+        Channel("height_mm", "mm", "Arm height", "readings.height_mm", decimals=3),
         Channel("way_m", "m", "Way", "readings.way_m", decimals=6),
         Channel("stretch", "", "Stretches", "readings.stretch"),
         Channel(GATE, "", "Gates closed", "gate", decimals=0, whole=True),

@@ -19,6 +19,7 @@ from tester.inputs.rig.section_classes import AXIS, WATCHDOG_PROOF
 from tester.kinds.specimen_on_track import KIND
 from tester.kinds.specimen_on_track.interlocks.chamber import STALE_AIR_S, STALE_EXIT_S
 from tester.kinds.specimen_on_track.interlocks.force import STALE_CELL_S
+from tester.kinds.specimen_on_track.interlocks.height import STALE_HEIGHT_S
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.interlock_table import InterlockTable
@@ -157,6 +158,7 @@ class TrackConfig(Rig):
         "chamber": OwnDevice("chamber", "chamber", optional=True, stale=STALE_AIR_S),
         "pyrometer": OwnDevice("pyrometer", "ir_thermometer", optional=True, stale=STALE_EXIT_S),
         "thermometer": OwnDevice("thermometer", "ir_thermometer", optional=True),
+        "height_sensor": OwnDevice("height sensor", "sensor", optional=True, channels=("height",), stale=STALE_HEIGHT_S),
     }
     quantities: ClassVar[Quantities] = QUANTITIES
     table: ClassVar[InterlockTable] = TABLE

@@ -208,6 +208,7 @@ def fits(recipe: str, fault: str) -> bool:
         return False
     rig = track_rig_of(TRACKS[recipe].rig, ())
     has = {"lift": rig.axes.lift is not None, "end switch": rig.linear}
+    has |= {name: "height_sensor" in rig.devices for name in ("holder grinds", "height sensor")}
     has |= {name: name in rig.devices for name in ("chamber", "pyrometer", "thermometer")}
     return all(there for name, there in has.items() if fault.startswith(name))
 
@@ -243,6 +244,9 @@ FIRST: tuple[First, ...] = (
     First("overload", ("t=0 s: load cell offset 182 N",), SLIDE),
     First("friction beyond load", ("t=0 s: load cell offset 60 N",), SLIDE),
     First("contact lost", ("t=0 s: load cell gain -99 %",), DISC),
+    First("arm off its height", ("t=0 s: holder grinds",), DISC),
+    First("height sensor silent", ("t=0 s: height sensor silent",), DISC),
+    First("height sensor frozen", ("t=0 s: height sensor frozen",), DISC),
     First("force with the arm raised", ("t=0 s: load cell offset 8 N",), LIFT),
     First("chamber beyond its range", ("t=0 s: chamber runs away",), TEMPER, 200.0,
           ("limits.air_high=26.2 degC", "interlocks.range=0.5 K")),

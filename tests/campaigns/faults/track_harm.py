@@ -21,6 +21,8 @@ STILL_SHARE: Final = 1e-3
 LIFT_MM: Final = 0.2
 """An arm that must stand has come down this far at most, mm."""
 UNLOADED_N: Final = 0.5
+GROUND_M: Final = 1.0
+"""A bare holder has spoilt the track after this way under load, m: at 2 m/s that of half a second."""
 
 
 @dataclass(slots=True)
@@ -78,6 +80,8 @@ class TrackHarmObserver:
         if rig.plant.parameters.enclosed and not COLDEST_C <= truth.air_c <= HOTTEST_C:
             limits = f"{COLDEST_C:g} to {HOTTEST_C:g} degC"
             self._note("chamber beyond its range", f"{truth.air_c:.0f} degC at {now:.2f} s, allowed {limits}")
+        if rig.plant.ground_m > GROUND_M:
+            self._note("holder grinds along the track", f"{rig.plant.ground_m:.2f} m at {now:.2f} s")
         if rig.hit_stop:
             self._note("end of travel hit", f"at {now:.2f} s")
         moves = abs(truth.track_m_s) >= self.still_m_s

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.inputs.rig.parameter import NOT_NEGATIVE, SHARE, Direction, Parameter
+from tester.inputs.rig.parameter import NOT_NEGATIVE, Parameter
 from tester.kinds.specimen_on_track.interlocks.inputs import Row, TrackInputs
+from tester.kinds.specimen_on_track.interlocks.witness import (
+    DEAF_N,
+    HALF,
+    LOST_SHARE,
+    is_low,
+    least_low_n,
+    shows_contact,
+)
 from tester.machine.row import ACK, CONTROLLED, LOADED, Interlock
 from tester.machine.watches import at_least, at_most, condition
 from tester.machine.wires import answered_s
@@ -109,11 +117,6 @@ FORCE_RAISED: Final[Row] = Interlock(
     reaction=CONTROLLED,
 )
 
-LOST_SHARE: Final = Parameter(
-    "lost_share", "1", "0.05", "friction below this share of the load while it slides ... [A]", SHARE,
-    direction=Direction.HIGHER, hardest="0.02",
-    because="rubber on a powdered track has a tenth; a specimen holder that slides on ice has a fiftieth",
-)  # fmt: skip
 CONTACT_WAY_MM: Final = Parameter(
     "contact_way_mm", "mm", "0.8 mm", "... after this way one way: the arm's spring is drawn by then [A] ...",
     hardest="5 mm", because="100 N each way draw a spring of 200 N/mm by 1 mm",
@@ -122,6 +125,16 @@ LOST_DELAY_S: Final = Parameter(
     "lost_delay_s", "s", "200 ms", "... for this long [A]", NOT_NEGATIVE,
     hardest="2 s", because="at 2 m/s a bare holder grinds along 4 m of the track in 2 s",
 )  # fmt: skip
+
+
+def _least_n(v: TrackInputs) -> float:
+    """Return the least friction that counts as contact, N."""
+    p, load_n, least_mu = v.parameters, v.readings.load_n, v.demand.least_mu
+    share = p[LOST_SHARE]
+    if is_low(least_mu, share):
+        # The recipe lowers the level only where another reading shows contact, and never to what a deaf cell may show.
+        return least_low_n(p[DEAF_N], least_mu, load_n) if shows_contact(v) else share * load_n
+    return max(share, HALF * least_mu) * load_n
 
 
 def _slides(v: TrackInputs) -> bool:
@@ -133,12 +146,13 @@ CONTACT_LOST: Final[Row] = Interlock(
     name="contact lost",
     cause="no friction where the specimen is to slide: it is worn away or out of its holder, or the cell is deaf",
     watch=at_least(
-        "friction < lost_share of the load after contact_way",
+        "friction < lost_share of the load after contact_way, or < deaf where the recipe expects less and the arm's"
+        " height shows contact",
         lambda v: v.readings.friction_n,
-        lambda v: v.parameters[LOST_SHARE] * v.readings.load_n,
+        _least_n,
         "N",
     ),
-    parameters=(LOST_SHARE, CONTACT_WAY_MM),
+    parameters=(LOST_SHARE, DEAF_N, CONTACT_WAY_MM),
     applies=_slides,
     delay=LOST_DELAY_S,
     when=LOADED,

@@ -40,7 +40,8 @@ class TrackLimits:
     chamber: bool
     air: bool
     exit: bool
-    """The rig has a chamber, a sensor of the air, a pyrometer."""
+    height: bool
+    """The rig has a chamber, a sensor of the air, a pyrometer, a sensor of the arm's height."""
 
 
 class WayMonitor:

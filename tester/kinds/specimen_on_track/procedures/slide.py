@@ -16,6 +16,7 @@ from tester.analysis.blocks import BlockCounter
 from tester.analysis.stability import REPEAT_WINDOWS, filled
 from tester.kinds.specimen_on_track.axes import held_by
 from tester.kinds.specimen_on_track.context import TrackContext, TrackTarget
+from tester.kinds.specimen_on_track.interlocks.witness import least_stated
 from tester.kinds.specimen_on_track.procedures.motions import ComeToStand, GoTo, TakeTrackTare, arm
 from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES, TrackCondition
 from tester.machine.activity import Activity
@@ -83,6 +84,8 @@ class MeasureTrackRepeat(MeasuredRepeat):
         super().__init__(BlockCounter(ctx.quantities))
         self.condition = step
         held = held_by(step.setpoint)
+        self.least_mu = least_stated(step.least_mu, held.interface, ctx.rig.interlocks.lost_share)
+        ctx.demand.least_mu = 0.0
         self.speed_m_s = held.track_m_s
         self.stretch_m = step.way_m(held.track_m_s) / STRETCHES
         self.target = TrackTarget(
@@ -136,6 +139,7 @@ class MeasureTrackRepeat(MeasuredRepeat):
         elif self.phase is SlidePhase.SETTLE:
             self.phase = SlidePhase.SLIDE
             ctx.target = self.target
+            ctx.demand.least_mu = self.least_mu
             self._go(ctx)
         else:
             return True
@@ -196,6 +200,7 @@ class MeasureTrackRepeat(MeasuredRepeat):
 
     def _end(self, ctx: TrackContext, ending: Ending, detail: str) -> None:
         ctx.burst = 0
+        ctx.demand.least_mu = 0.0
         self.ending, self.detail = ending, detail
         ctx.target = TrackTarget()
         self.phase = SlidePhase.LIFT

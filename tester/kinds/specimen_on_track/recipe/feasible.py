@@ -6,7 +6,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from itertools import product
 from pathlib import Path
-from typing import Final
 
 from sim.physics.laws import NO_SETTING
 from sim.physics.materials import OutsideError
@@ -15,15 +14,11 @@ from tester.base.source import InvalidSource, Location, Problem, Tree
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.recipe_schema import Recipe, surfaces_of
-from tester.kinds.specimen_on_track.axes import AXES
+from tester.kinds.specimen_on_track.axes import AXES, held_by
+from tester.kinds.specimen_on_track.interlocks.witness import HALF, LOW, is_low, least_low_n, least_stated
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
-from tester.kinds.specimen_on_track.recipe.schema import track_settings
+from tester.kinds.specimen_on_track.recipe.schema import track_settings, track_settings_of
 from tester.kinds.specimen_on_track.rig import TrackConfig
-
-LOW: Final = 0.9
-"""Least friction of a specimen, as a share of the expected [A]: three times the scatter of specimens, 3 %, and
-repeats, 2 %."""
-
 
 def out_of_reach(
     rig: TrackConfig, temperatures_c: Sequence[float], within_k: float, at: Location, tree: Tree
@@ -46,26 +41,62 @@ def out_of_reach(
             )
 
 
+def unwitnessed(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
+    """Yield a problem for each grid whose stated least friction is too low to show contact on this rig."""
+    limits, high = rig.interlocks, "height_sensor" in rig.devices
+    for number, grid in enumerate(recipe.grids):
+        found: list[str] = []
+        for entry in conditions_of(recipe.model_copy(update={"grids": [grid]}), track_settings):
+            held = held_by(Setpoint("", entry.values, AXES))
+            least_mu = least_stated(track_settings_of(entry.settings).least_mu, held.interface, limits.lost_share)
+            if not is_low(least_mu, limits.lost_share):
+                continue
+            if not high:
+                found.append(
+                    f"least_friction: {least_mu:g} is too little to show contact (interlocks.lost_share"
+                    f' {100.0 * limits.lost_share:g} %), and rig "{rig.name}" has no second reading of it (expected'
+                    " height_sensor in devices, or least_friction of"
+                    f" {limits.lost_share / LOW:.2g} or more)"
+                )
+            elif not LOW * least_mu * held.load_n >= least_low_n(limits.deaf_n, least_mu, held.load_n):
+                found.append(
+                    f"least_friction: {least_mu:g} of {held.load_n:g} N is {least_mu * held.load_n:.2g} N, and a deaf"
+                    f" cell may show {limits.deaf_n:g} N (interlocks.deaf; expected a load of"
+                    f" {limits.deaf_n / (LOW * least_mu):.2g} N or more)"
+                )
+        if found:
+            yield tree.problem(("grids", number), found[0])
+
+
 def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:
     """Yield a problem for each compound with conditions whose expected friction counts as a lost contact."""
     if not rig.simulated:
         return  # the friction of a real specimen is unknown
-    estimator = TrackEstimator.of(rig, recipe, Path(tree.name))
-    lost = rig.interlocks.lost_share
+    estimator, limits = TrackEstimator.of(rig, recipe, Path(tree.name)), rig.interlocks
+    lost, high = limits.lost_share, "height_sensor" in rig.devices
     for number, specimen in enumerate(recipe.specimens):
-        result: list[tuple[float, str]] = []
+        result: list[tuple[float, str, float]] = []
         for entry in conditions_of(recipe, track_settings):
             setpoint = Setpoint(specimen.compound, entry.values, AXES)
-            mu = estimator.mu(setpoint)
-            if not LOW * mu >= lost:
-                result.append((mu, condition_words(setpoint)))
+            mu, held = estimator.mu(setpoint), held_by(setpoint)
+            least_mu = least_stated(track_settings_of(entry.settings).least_mu, held.interface, lost)
+            least = max(lost, HALF * least_mu)
+            if high and is_low(least_mu, lost):
+                least = least_low_n(limits.deaf_n, least_mu, held.load_n) / held.load_n
+            if not LOW * mu >= least:
+                result.append((mu, condition_words(setpoint), least))
         if result:
-            mu, words = min(result)
+            mu, words, least = min(result)
+            way = (
+                "state least_friction for a wet or powdered track"
+                if high
+                else f'rig "{rig.name}" has no second reading of the contact: height_sensor in devices'
+            )
             yield tree.problem(
                 ("specimens", number, "compound"),
                 f"sim.law {rig.sim.law} expects friction of {100.0 * mu:.2g} % of the load at {words}, and too little"
-                f" in {len(result)} conditions: below {100.0 * lost:g} % the contact counts as lost and the run trips"
-                " (interlocks.lost_share)",
+                f" in {len(result)} conditions: below {100.0 * least:.3g} % the contact counts as lost and the run trips"
+                f" (interlocks.lost_share and deaf; {way})",
             )
 
 

@@ -23,7 +23,13 @@ from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
 from tester.kinds.specimen_on_track.budget import TERMS
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
-from tester.kinds.specimen_on_track.recipe.feasible import area_problems, law_problems, low_friction, out_of_reach
+from tester.kinds.specimen_on_track.recipe.feasible import (
+    area_problems,
+    law_problems,
+    low_friction,
+    out_of_reach,
+    unwitnessed,
+)
 from tester.kinds.specimen_on_track.recipe.plan_steps import (
     INSERTED,
     Cover,
@@ -95,6 +101,8 @@ class TrackPart(SpecimenPart):
             yield from area_problems(own, recipe, tree)
         if measure is None:
             return
+        yield from unwitnessed(own, recipe, tree)
+        yield from low_friction(own, recipe, tree)
         for number, grid in enumerate(recipe.grids):
             at: Location = ("grids", number)
             values = axis_values(measure, grid)
@@ -103,10 +111,6 @@ class TrackPart(SpecimenPart):
             within_k = track_settings(measure, grid).soak.within_k
             yield from out_of_reach(own, numbers(values["temperature"]), within_k, at, tree)
             yield from self._heat(own, recipe, measure, grid, at, tree)
-
-    def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield conditions at which the contact is expected to count as lost, because friction is low."""
-        yield from low_friction(TrackConfig.of(rig), recipe, tree)
 
     def _heat(
         self, rig: TrackConfig, recipe: Recipe, measure: MeasureModel, grid: GridModel, at: Location, tree: Tree

@@ -83,10 +83,14 @@ class Open(Temper):
 
 @dataclass(frozen=True)
 class TrackSettings(Settings):
-    """Settings of a condition: its way, or the longer way that ``at_least_s`` takes at its speed."""
+    """Settings of a condition: its way, or the longer way that ``at_least_s`` takes at its speed.
+
+    ``least_mu``: the least coefficient expected; 0: none is stated.
+    """
 
     distance_m: float
     at_least_s: float
+    least_mu: float
 
     def way_m(self, speed_m_s: float) -> float:
         """Return the way, at a speed, over which friction must be stationary."""

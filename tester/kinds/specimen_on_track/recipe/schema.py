@@ -6,13 +6,17 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Annotated, TypeAlias
 
+from pydantic import Field
+
 from tester.analysis.stability import Window
 from tester.base.units import Quantity
 from tester.inputs.recipe.grid_settings import DEFAULT_EXTENSION, settings_of
+from tester.inputs.recipe.plan import Settings
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.kinds.specimen_on_track.recipe.plan_steps import STRETCHES, TrackSettings
 
 Distance: TypeAlias = Annotated[float, Quantity("mm", ge=0.1, le=1e6)]
+Coefficient: TypeAlias = Annotated[float, Field(gt=0.0, le=1.0)]
 AtLeast: TypeAlias = Annotated[float, Quantity("s", ge=1.0, le=3600.0)]
 
 
@@ -23,6 +27,9 @@ class TrackMeasure(MeasureModel, frozen=True):
     """way over which friction has to be stationary; a repeat collects 1.5 times that"""
     at_least: AtLeast = 5.0
     """... and at least as long as this takes at the condition's speed"""
+    least_friction: Coefficient | None = None
+    """the least coefficient expected; below interlocks.lost_share only of a track that is wet or powdered, on a rig with
+    a height sensor"""
 
 
 class TrackGrid(GridModel, frozen=True):
@@ -30,6 +37,7 @@ class TrackGrid(GridModel, frozen=True):
 
     distance: Distance | None = None
     at_least: AtLeast | None = None
+    least_friction: Coefficient | None = None
 
 
 class TrackRecipe(Recipe, frozen=True):
@@ -37,6 +45,13 @@ class TrackRecipe(Recipe, frozen=True):
 
     measure: TrackMeasure | None = None
     grids: Sequence[TrackGrid] = ()
+
+
+def track_settings_of(settings: Settings) -> TrackSettings:
+    """Return a condition's settings as this machine's; raises TypeError for those of another kind."""
+    if not isinstance(settings, TrackSettings):
+        raise TypeError(f"{type(settings).__name__} are no settings of this machine")
+    return settings
 
 
 def track_settings(measure: MeasureModel, grid: GridModel) -> TrackSettings:
@@ -48,4 +63,5 @@ def track_settings(measure: MeasureModel, grid: GridModel) -> TrackSettings:
         **vars(common),
         distance_m=1e-3 * (grid.distance or measure.distance),
         at_least_s=grid.at_least or measure.at_least,
+        least_mu=grid.least_friction or measure.least_friction or 0.0,
     )

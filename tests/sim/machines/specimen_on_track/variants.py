@@ -79,10 +79,11 @@ def wiring(variant: str) -> RigSpec:
                        {"load_cell": cell, "chamber": chamber})  # fmt: skip
     if variant == "pin-on-disc":
         thermometer = load_profile("calex_pyrominibus")
-        return RigSpec(BITRATE, {"track": _disc()}, lines, {
+        return RigSpec(BITRATE, {"track": _disc()}, {**lines, "height": LineSpec(38400)}, {
             "load_cell": cell,
             "pyrometer": DeviceSpec(thermometer, "heat", 1),
             "thermometer": DeviceSpec(thermometer, "heat", 2),
+            "height_sensor": DeviceSpec(load_profile("displacement_transmitter"), "height", 1),
         })  # fmt: skip
     raise ValueError(f"no variant {variant!r}; there are grosch, pin-on-disc")
 
