@@ -31,12 +31,13 @@ class TrackExposure(Enum):
 
     MOVING = "while the track moves"
     SLIDING = "in contact, while the track moves"
+    SLID = "in contact, once the arm's spring is drawn"
     LIFTING = "while the arm has a command to move"
     TEMPERED = "while the chamber has a command to run"
     NEAR_THE_END = "where the track comes to the end of its travel"
 
 
-MOVING, SLIDING, LIFTING, TEMPERED, NEAR_THE_END = TrackExposure
+MOVING, SLIDING, SLID, LIFTING, TEMPERED, NEAR_THE_END = TrackExposure
 
 
 class TrackOverspeeds(drives.Runaway):
@@ -130,11 +131,11 @@ def _device_rows() -> Iterator[FaultKind]:
 
 def _contact_rows() -> Iterator[FaultKind]:
     """Yield a specimen that is lost, a cell that is deaf, and the faults of the sensor of the arm's height."""
-    yield FaultKind("specimen lost", specimen_lost, SLIDING, TRIP, 0.5 + SCAN_S, "", 0.02,
+    yield FaultKind("specimen lost", specimen_lost, SLID, TRIP, 0.5 + SCAN_S, "", 0.02,
                     note="its holder slides on a film with this coefficient")
-    yield FaultKind("holder grinds", specimen_lost, SLIDING, TRIP, 0.5 + SCAN_S, "", 0.4,
+    yield FaultKind("holder grinds", specimen_lost, SLID, TRIP, 0.5 + SCAN_S, "", 0.4,
                     note="with friction like rubber's: only the arm's height shows it")
-    yield FaultKind("load cell deaf", cell_deaf, SLIDING, TRIP, 0.5 + SCAN_S,
+    yield FaultKind("load cell deaf", cell_deaf, SLID, TRIP, 0.5 + SCAN_S,
                     note="it shows its noise, and no force")
     yield from device_rows(HEIGHT, SLIDING, 0.25 + SCAN_S, (*common.SILENCES, "reset"))
     yield FaultKind(f"{HEIGHT} frozen", partial(SensorFault, HEIGHT, "frozen"), SLIDING, TRIP, 1.2 + SCAN_S)

@@ -38,12 +38,11 @@ class TrackPlant:
     """
 
     __slots__ = (
-        "_air", "_drift_n_k", "_dry", "_law", "_noise", "_place", "_pyrometer", "_repeat", "_seed",
-        "_height_drift_mm_k", "_height_noise", "_height_zero_mm", "_since_rest_m",
-        "_specimen", "_stick_slip", "_zero_n", "air_c", "arm_n", "compound", "deaf", "force_n", "grip", "ground_m",
-        "height_mm", "holder_mu", "hung_n", "interface",
-        "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "way_m",
-        "weights_n", "worn_mm",
+        "_air", "_drift_n_k", "_dry", "_height_drift_mm_k", "_height_noise", "_height_zero_mm", "_law", "_noise",
+        "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m", "_specimen", "_stick_slip", "_zero_n", "air_c",
+        "arm_n", "compound", "deaf", "force_n", "grip", "ground_m", "height_mm", "holder_mu", "hung_n", "interface",
+        "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "way_m", "weights_n",
+        "worn_mm",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -273,7 +272,8 @@ class TrackPlant:
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return the cell's present readings: the tangential force in N as the first of four channels."""
         s = self.parameters.sensors
-        seen_n = (0.0 if self.deaf else self.force_n) + self.hung_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
+        seen_n = 0.0 if self.deaf else self.force_n
+        seen_n += self.hung_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
         rms_n = self.parameters.noise * s.force_rms
         if rms_n > 0.0:
             seen_n += rms_n * self._noise.next()

@@ -158,7 +158,9 @@ class TrackConfig(Rig):
         "chamber": OwnDevice("chamber", "chamber", optional=True, stale=STALE_AIR_S),
         "pyrometer": OwnDevice("pyrometer", "ir_thermometer", optional=True, stale=STALE_EXIT_S),
         "thermometer": OwnDevice("thermometer", "ir_thermometer", optional=True),
-        "height_sensor": OwnDevice("height sensor", "sensor", optional=True, channels=("height",), stale=STALE_HEIGHT_S),
+        "height_sensor": OwnDevice(
+            "height sensor", "sensor", optional=True, channels=("height",), stale=STALE_HEIGHT_S
+        ),
     }
     quantities: ClassVar[Quantities] = QUANTITIES
     table: ClassVar[InterlockTable] = TABLE

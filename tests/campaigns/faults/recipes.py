@@ -101,6 +101,7 @@ class TrackRecipe(NamedTuple):
 
     rig: str
     text: str
+    overrides: tuple[str, ...] = ()
 
 
 TRACKS = {
@@ -121,6 +122,15 @@ measure: {repeats: 1, min_valid: 1, distance: 100 mm, at_least: 2 s, temperature
 grids:
   - {name: wet, interface: [dry, wet], load: 10 N, temperature: 23 degC, track_speed: 0.3 m/s}
 """),
+    "wet road": TrackRecipe("pin-on-disc", """\
+recipe: campaign, wet road
+kind: specimen_on_track
+specimens: [{compound: SBR}]
+measure: {repeats: 1, min_valid: 1, distance: 100 mm, at_least: 2 s, temperature_band: 5 K, least_friction: 0.02,
+          soak: {within: 3 K, for: 2 s}}
+grids:
+  - {name: wet, interface: wet, load: 10 N, temperature: 23 degC, track_speed: 0.3 m/s}
+""", ("sim.contact.wet=0.0094",)),
 }  # fmt: skip
 """Short recipes of the second kind of machine, by their names."""
 
@@ -146,7 +156,7 @@ def _language(rig_name: str) -> FaultLanguage:
 def setting_of(recipe: str) -> Setting:
     """Return a recipe of the campaign, or a corner (tests.campaigns.faults.corners), by its name. Raises KeyError."""
     if recipe in TRACKS:
-        return Setting(TRACKS[recipe].text)
+        return Setting(TRACKS[recipe].text, TRACKS[recipe].overrides)
     if recipe in RECIPES:
         return Setting(RECIPES[recipe])
     corner = corners()[recipe]

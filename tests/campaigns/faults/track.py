@@ -36,6 +36,8 @@ MOVES_SHARE = 2e-5
 """A track faster than this share of its drive's greatest speed is meant to move: 0.2 um/s, 0.04 mm/s."""
 SLID_MM = 1.2
 """After this way under load rubber slides: the arm's spring is drawn."""
+TOUCHED_N = 0.1
+"""Rubber under load has more friction: 10 N at 0.02."""
 NEAR_MM = 20.0
 """To the end of the travel."""
 
@@ -134,7 +136,10 @@ class TrackExposed:
         if exposure is TrackExposure.MOVING:
             return moves
         if exposure is TrackExposure.SLIDING:
-            return moves and rig.plant.load_n > 0.0 and abs(rig.plant.force_n) > 1.0
+            return moves and rig.plant.load_n > 0.0 and abs(rig.plant.force_n) > TOUCHED_N
+        if exposure is TrackExposure.SLID:
+            slid_mm = 1e3 * stage.run.engine.ctx.demand.sliding_m
+            return moves and rig.plant.load_n > 0.0 and slid_mm > SLID_MM
         if exposure is TrackExposure.LIFTING:
             return stage.all_on and abs(rig.lift_mm - state.setpoints.lift_mm) > 0.5
         if exposure is TrackExposure.TEMPERED:
@@ -197,7 +202,7 @@ class TrackInvariants:
         self.broken.setdefault(name, f"{text} at {stage.run.engine.ctx.now:.2f} s")
 
 
-GRID = ("slow track", "disc")
+GRID = ("slow track", "disc", "wet road")
 """The recipes of the campaign, by name."""
 FAULTS = tuple(dict.fromkeys(fault for recipe in GRID for fault in language_of(recipe).catalogue))
 
@@ -206,9 +211,9 @@ def fits(recipe: str, fault: str) -> bool:
     """Tell whether the rig of a recipe has what a fault is of."""
     if fault not in language_of(recipe).catalogue:
         return False
-    rig = track_rig_of(TRACKS[recipe].rig, ())
+    rig = track_rig_of(TRACKS[recipe].rig, TRACKS[recipe].overrides)
     has = {"lift": rig.axes.lift is not None, "end switch": rig.linear}
-    has |= {name: "height_sensor" in rig.devices for name in ("holder grinds", "height sensor")}
+    has |= dict.fromkeys(("holder grinds", "height sensor"), "height_sensor" in rig.devices)
     has |= {name: name in rig.devices for name in ("chamber", "pyrometer", "thermometer")}
     return all(there for name, there in has.items() if fault.startswith(name))
 
@@ -216,7 +221,7 @@ def fits(recipe: str, fault: str) -> bool:
 ROWS = tuple(row.name for row in TABLE.rows)
 SLIDE, TARE, LIFT = ("slow track", "slide"), ("slow track", "tare"), ("slow track", "lift")
 TEMPER = ("slow track", "temper")
-DISC = ("disc", "slide")
+DISC, WET = ("disc", "slide"), ("wet road", "slide")
 """(recipe, phase)."""
 UNWATCHED = "interlocks.speed_share=1"
 DULL = "interlocks.speed_floor=0.9"
@@ -244,7 +249,11 @@ FIRST: tuple[First, ...] = (
     First("overload", ("t=0 s: load cell offset 182 N",), SLIDE),
     First("friction beyond load", ("t=0 s: load cell offset 60 N",), SLIDE),
     First("contact lost", ("t=0 s: load cell gain -99 %",), DISC),
+    First("contact lost", ("t=0 s: load cell deaf",), WET),
     First("arm off its height", ("t=0 s: holder grinds",), DISC),
+    First("arm off its height", ("t=0 s: holder grinds 0.02",), WET),
+    First("arm off its height", ("t=0 s: specimen lost",), WET),
+    First("arm off its height", ("t=0 s: height sensor offset -2 mm",), WET),
     First("height sensor silent", ("t=0 s: height sensor silent",), DISC),
     First("height sensor frozen", ("t=0 s: height sensor frozen",), DISC),
     First("force with the arm raised", ("t=0 s: load cell offset 8 N",), LIFT),

@@ -14,11 +14,12 @@ from tester.base.source import InvalidSource, Location, Problem, Tree
 from tester.inputs.materials.setting import law_setting
 from tester.inputs.recipe.conditions import conditions_of
 from tester.inputs.recipe.recipe_schema import Recipe, surfaces_of
-from tester.kinds.specimen_on_track.axes import AXES, held_by
+from tester.kinds.specimen_on_track.axes import AXES, TrackHeld, held_by
 from tester.kinds.specimen_on_track.interlocks.witness import HALF, LOW, is_low, least_low_n, least_stated
 from tester.kinds.specimen_on_track.recipe.estimate import TrackEstimator
 from tester.kinds.specimen_on_track.recipe.schema import track_settings, track_settings_of
 from tester.kinds.specimen_on_track.rig import TrackConfig
+
 
 def out_of_reach(
     rig: TrackConfig, temperatures_c: Sequence[float], within_k: float, at: Location, tree: Tree
@@ -72,32 +73,38 @@ def low_friction(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Probl
     """Yield a problem for each compound with conditions whose expected friction counts as a lost contact."""
     if not rig.simulated:
         return  # the friction of a real specimen is unknown
-    estimator, limits = TrackEstimator.of(rig, recipe, Path(tree.name)), rig.interlocks
-    lost, high = limits.lost_share, "height_sensor" in rig.devices
+    estimator = TrackEstimator.of(rig, recipe, Path(tree.name))
     for number, specimen in enumerate(recipe.specimens):
-        result: list[tuple[float, str, float]] = []
+        result: list[tuple[float, str, float, str]] = []
         for entry in conditions_of(recipe, track_settings):
             setpoint = Setpoint(specimen.compound, entry.values, AXES)
-            mu, held = estimator.mu(setpoint), held_by(setpoint)
-            least_mu = least_stated(track_settings_of(entry.settings).least_mu, held.interface, lost)
-            least = max(lost, HALF * least_mu)
-            if high and is_low(least_mu, lost):
-                least = least_low_n(limits.deaf_n, least_mu, held.load_n) / held.load_n
+            mu = estimator.mu(setpoint)
+            least, key = _least(rig, track_settings_of(entry.settings).least_mu, held_by(setpoint))
             if not LOW * mu >= least:
-                result.append((mu, condition_words(setpoint), least))
+                result.append((mu, condition_words(setpoint), least, key))
         if result:
-            mu, words, least = min(result)
-            way = (
-                "state least_friction for a wet or powdered track"
-                if high
-                else f'rig "{rig.name}" has no second reading of the contact: height_sensor in devices'
-            )
+            mu, words, least, key = min(result)
             yield tree.problem(
                 ("specimens", number, "compound"),
                 f"sim.law {rig.sim.law} expects friction of {100.0 * mu:.2g} % of the load at {words}, and too little"
-                f" in {len(result)} conditions: below {100.0 * least:.3g} % the contact counts as lost and the run trips"
-                f" (interlocks.lost_share and deaf; {way})",
+                f" in {len(result)} conditions: below {100.0 * least:.3g} % the contact counts as lost and the run"
+                f" trips ({key})",
             )
+
+
+def _least(rig: TrackConfig, stated: float, held: TrackHeld) -> tuple[float, str]:
+    """Return the least share of the load that counts as contact, and what it comes from or lacks."""
+    limits, high = rig.interlocks, "height_sensor" in rig.devices
+    least_mu = least_stated(stated, held.interface, limits.lost_share)
+    if HALF * least_mu > limits.lost_share:
+        return HALF * least_mu, "half of least_friction"
+    if not high:
+        lacks = f'rig "{rig.name}" has no second reading of the contact: height_sensor in devices'
+        return limits.lost_share, f"interlocks.lost_share; {lacks}"
+    if is_low(least_mu, limits.lost_share):
+        share = least_low_n(limits.deaf_n, least_mu, held.load_n) / held.load_n
+        return share, "interlocks.deaf, or half of least_friction"
+    return limits.lost_share, "interlocks.lost_share; state least_friction for a wet or powdered track"
 
 
 def law_problems(rig: TrackConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]:

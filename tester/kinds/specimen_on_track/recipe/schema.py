@@ -28,8 +28,8 @@ class TrackMeasure(MeasureModel, frozen=True):
     at_least: AtLeast = 5.0
     """... and at least as long as this takes at the condition's speed"""
     least_friction: Coefficient | None = None
-    """the least coefficient expected; below interlocks.lost_share only of a track that is wet or powdered, on a rig with
-    a height sensor"""
+    """the least coefficient expected; below interlocks.lost_share only of a wet or powdered track, on a rig with a
+    height sensor"""
 
 
 class TrackGrid(GridModel, frozen=True):

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
-from tester.inputs.recipe.loader import check, load_checked
+from tester.inputs.recipe.loader import check
 from tester.inputs.recipe.plan import Mounted, Plan, Stand
 from tester.inputs.recipe.plan_text import lines
 from tester.kinds import load_rig
@@ -52,20 +54,65 @@ def test_air_that_no_heater_brings_about_is_refused_with_the_reason() -> None:
     assert problems(DISC.replace("temperature: 23 degC", "temperature: 25 degC"), "pin-on-disc") == []
 
 
-def doubts(text: str, *overrides: str) -> list[str]:
-    loaded = load_checked(text, load_rig("pin-on-disc", overrides), PART, "r.yaml")
-    return [one.message for one in loaded.doubts]
+WET = DISC.replace("[dry, wet]", "wet").replace("5 K, soak", "5 K, least_friction: 0.02, soak")
+FILM = ("sim.contact.wet=0.0094",)
 
 
-def test_friction_that_counts_as_a_lost_contact_is_foretold() -> None:
+def on_disc(text: str, *overrides: str, high: bool = True) -> list[str]:
+    """Return the problems of a recipe on the disc, with or without its height sensor."""
+    rig = load_rig("pin-on-disc", overrides)
+    devices = {name: device for name, device in rig.devices.items() if high or name != "height_sensor"}
+    return [problem.message for problem in check(text, replace(rig, devices=devices), PART)]
+
+
+def test_friction_that_counts_as_a_lost_contact_is_refused_with_the_key_to_state() -> None:
     text = DISC.replace("compound: SBR", "compound: tread") + "abrasive: {name: road}\n"
-    (said,) = doubts(text, "sim.law=greta")
+    (said,) = on_disc(text, "sim.law=greta")
     assert "sim.law greta expects friction of 0." in said and "at tread, wet, 10 N" in said
-    assert "below 5 % the contact counts as lost and the run trips (interlocks.lost_share)" in said
+    assert "below 5 % the contact counts as lost and the run trips (interlocks.lost_share; state" in said
+    assert "state least_friction for a wet or powdered track" in said
 
 
-def test_friction_well_above_a_lost_contact_is_no_doubt() -> None:
-    assert doubts(DISC) == []
+def test_low_friction_that_a_rig_cannot_witness_is_refused_with_what_it_lacks() -> None:
+    of_law, stated = on_disc(WET, *FILM, high=False)
+    assert stated == (
+        "least_friction: 0.02 is too little to show contact (interlocks.lost_share 5 %), and rig"
+        ' "simulated pin on disc" has no second reading of it (expected height_sensor in devices, or least_friction of'
+        " 0.056 or more)"
+    )
+    assert 'rig "simulated pin on disc" has no second reading of the contact: height_sensor in devices' in of_law
+
+
+def test_low_friction_that_is_stated_is_allowed_where_the_height_shows_contact() -> None:
+    assert on_disc(WET, *FILM) == []
+
+
+def test_a_least_friction_above_the_share_needs_no_second_reading() -> None:
+    assert on_disc(WET.replace("0.02,", "0.06,"), high=False) == []
+
+
+def test_low_friction_under_a_small_load_is_refused_with_the_least_load() -> None:
+    _, said = on_disc(WET.replace("10 N", "5 N"), *FILM, "weights=[5, 10]")
+    assert said == (
+        "least_friction: 0.02 of 5 N is 0.1 N, and a deaf cell may show 0.1 N (interlocks.deaf; expected a load of"
+        " 5.6 N or more)"
+    )
+
+
+def test_a_law_below_the_stated_friction_is_refused() -> None:
+    (said,) = on_disc(WET, "sim.contact.wet=0.004")
+    assert "expects friction of 0.88 % of the load at SBR, wet, 10 N, 23 degC, 200 mm/s" in said and "below 1 %" in said
+    assert "(interlocks.deaf, or half of least_friction)" in said
+
+
+def test_a_dry_track_is_not_allowed_low_friction_by_what_is_stated() -> None:
+    text = DISC.replace("[dry, wet]", "dry").replace("5 K, soak", "5 K, least_friction: 0.02, soak")
+    (said,) = on_disc(text, "sim.contact.wet=0.6", "sim.rubbers={SBR: {mu_0: 0.02, mu_max: 0.02}}")
+    assert "at SBR, 10 N" in said and "below 5 %" in said
+
+
+def test_friction_well_above_a_lost_contact_is_no_problem() -> None:
+    assert on_disc(DISC) == []
 
 
 def test_on_a_disc_the_plan_says_how_much_friction_warms() -> None:
