@@ -157,6 +157,12 @@ TRACK_BY_HAND: tuple[Mutant, ...] = (
            "lambda v: v.late_s, LATE_SCAN_S", "lambda v: 1e-3 * v.late_s, LATE_SCAN_S", "scan late", TRACK),
     Mutant("stale accepted: drives", _WIRES, "return allowed if allowed < most else most", "return 1e9",
            "drive data stale", TRACK),
+    Mutant("a deaf cell passes on a film", f"{_T_ROWS}/witness.py", "return max(deaf_n, HALF * least_mu * load_n)",
+           "return -1e3", "contact lost", TRACK),
+    Mutant("no height is too low", f"{_T_ROWS}/witness.py", "return -(v.parameters[WEAR_MM] + thick_mm), ",
+           "return -1e3, ", "arm off its height", TRACK),
+    Mutant("the least friction is not lowered", f"{_T_ROWS}/witness.py", "return 0.0 < LOW * least_mu < lost_share",
+           "return False", "arm off its height", TRACK),
 )  # fmt: skip
 """Bugs of the second kind's control by hand."""
 MUTANTS = (*BY_HAND, _powered("wheel_on_belt"), *MASKED)

@@ -146,8 +146,8 @@ CONTACT_LOST: Final[Row] = Interlock(
     name="contact lost",
     cause="no friction where the specimen is to slide: it is worn away or out of its holder, or the cell is deaf",
     watch=at_least(
-        "friction < lost_share of the load after contact_way, or < deaf where the recipe expects less and the arm's"
-        " height shows contact",
+        "friction < lost_share of the load after contact_way; < deaf where least_friction is less and height shows"
+        " contact",
         lambda v: v.readings.friction_n,
         _least_n,
         "N",

@@ -18,15 +18,15 @@ from tester.machine.watches import at_most, within
 
 STALE_HEIGHT_DELAY_S: Final = Parameter(
     "stale_height_delay_s", "s", "50 ms", "one reply may be lost [A]", NOT_NEGATIVE,
-    hardest="200 ms", because="at 2 m/s a bare holder grinds along 0.4 m of the track in 200 ms",
+    hardest="200 ms", because="at 2 m/s a bare holder grinds along 0.4 m",
 )  # fmt: skip
 FROZEN_HEIGHT_S: Final = Parameter(
     "frozen_height_s", "s", "1 s", "identical counts of the height with the arm down and the track going [A]",
-    hardest="2 s", because="40 readings of a sensor with noise of many counts are never alike",
+    hardest="2 s", because="40 readings with noise are never alike",
 )  # fmt: skip
 HEIGHT_DELAY_S: Final = Parameter(
     "height_delay_s", "s", "100 ms", "... for this long [A]: two polls", NOT_NEGATIVE,
-    hardest="500 ms", because="at 2 m/s a bare holder grinds along 1 m of the track in 0.5 s",
+    hardest="500 ms", because="at 2 m/s a bare holder grinds along 1 m",
 )  # fmt: skip
 
 
@@ -38,7 +38,7 @@ def _rests(v: TrackInputs) -> bool:
 
 ARM_OFF: Final[Row] = Interlock(
     name="arm off its height",
-    cause="no specimen holds the arm: it is lost or worn, its holder grinds, or the sensor of the height is wrong",
+    cause="specimen lost or worn, its holder grinds; or the height sensor is wrong",
     watch=within("height < -(wear + thickness), or > thickness, arm lowered", height_span, "mm"),
     parameters=(WEAR_MM, THICKNESS_MM),
     applies=_rests,
@@ -58,7 +58,7 @@ HEIGHT_SILENT: Final[Row] = Interlock(
 
 HEIGHT_FROZEN: Final[Row] = Interlock(
     name="height sensor frozen",
-    cause="the sensor of the arm's height repeats its last reading",
+    cause="it repeats its last reading",
     watch=at_most(
         "counts unchanged for {} while the track is to go",
         lambda v: v.readings.now_s - v.readings.height_changed_s,

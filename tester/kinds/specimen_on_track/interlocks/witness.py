@@ -21,7 +21,7 @@ LOST_SHARE: Final = Parameter(
 DEAF_N: Final = Parameter(
     "deaf_n", "N", "0.1 N", "... or below this, where the height shows contact [A]: zero 0.05 N, noise 0.02 N ...",
     direction=Direction.HIGHER, hardest="0.08 N",
-    because="a deaf cell shows its zero, known to 0.05 N, and a noise of 0.02 N",
+    because="a deaf cell shows its zero, 0.05 N, and noise, 0.02 N",
 )  # fmt: skip
 HALF: Final = 0.5
 """Share of the stated least friction below which contact counts as lost [A]: friction scatters by a tenth, a track that
@@ -32,16 +32,16 @@ repeats, 2 %."""
 WEAR_MM: Final = Parameter(
     "wear_mm", "mm", "0.8 mm", "the arm lower than with a new specimen by this, which wear may take ... [A]",
     NOT_NEGATIVE, hardest="1 mm",
-    because="a specimen is 3 mm out of its holder: worn by 1 mm, it differs from a lost one by 2 mm",
+    because="specimens are 3 mm out of their holders: of these 1 mm is left to a lost one",
 )  # fmt: skip
 THICKNESS_MM: Final = Parameter(
     "thickness_mm", "mm", "0.5 mm",
     "... and by this, or higher by it [A]: load 0.25 mm, heat 0.1 mm, specimen, sensor ...",
-    hardest="1 mm", because="an arm 1 mm too high does not touch; with the wear 1 mm is left to a lost specimen",
+    hardest="1 mm", because="specimens are 3 mm out of their holders: of these 1 mm is left to a lost one",
 )  # fmt: skip
 STALE_HEIGHT_S: Final = Parameter(
     "stale_height_s", "s", "200 ms", "age of the arm's height: four polls [A]",
-    hardest="500 ms", because="at 2 m/s a bare holder grinds along 1 m of the track in 0.5 s",
+    hardest="500 ms", because="at 2 m/s a bare holder grinds along 1 m",
 )  # fmt: skip
 
 
