@@ -41,8 +41,7 @@ SPEEDS = ("0.05 m/s, 0.1 m/s, 0.2 m/s, 0.3 m/s, 0.5 m/s, 1 m/s", "0.05 m/s, 0.1 
 GRETA_HELD = 0.9
 """Share of seeds that is asked of the recipe `greta`: 18 of 20."""
 GRETA_SET = asked_by("greta")[1]
-"""Wet, the coefficient is 0.03, which the packaged limits take for a lost contact."""
-GRETA = (*(part for key in GRETA_SET for part in ("--set", key)), "--accept-risk", "hysteresis alone is weak")
+GRETA = tuple(part for key in GRETA_SET for part in ("--set", key))
 GRETA_AREA_MM2 = next(float(key.partition("=")[2]) for key in GRETA_SET if key.startswith("sim.contact.area"))
 
 
