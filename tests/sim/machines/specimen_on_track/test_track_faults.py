@@ -56,7 +56,7 @@ def cell_n(rig: TrackRig) -> float:
 
 @pytest.mark.parametrize("phrase", CATALOGUE)
 def test_every_row_can_be_written_begins_and_ends(phrase: str) -> None:
-    rig = made("pin-on-disc" if phrase.split()[0] in ("pyrometer", "thermometer") else "grosch")
+    rig = made("pin-on-disc" if phrase.split()[0] in ("pyrometer", "thermometer", "height") else "grosch")
     script = play(rig, f"{phrase} for 0.05 s", 0.2)
     assert [text.rsplit(": ", 1)[1] for _, text in script.happened] == ["begins", "is over"]
 

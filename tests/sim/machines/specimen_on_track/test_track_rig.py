@@ -69,7 +69,7 @@ def test_both_kinds_of_machine_are_found_and_no_other() -> None:
     ("variant", "axes", "devices"),
     [
         ("grosch", ["track", "lift"], ["load cell", "chamber"]),
-        ("pin-on-disc", ["track"], ["load cell", "pyrometer", "thermometer"]),
+        ("pin-on-disc", ["track"], ["load cell", "pyrometer", "thermometer", "height sensor"]),
     ],
 )
 def test_a_variant_has_its_drives_and_devices(variant: str, axes: list[str], devices: list[str]) -> None:
