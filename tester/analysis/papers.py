@@ -25,10 +25,25 @@ class PaperVerdict(StrEnum):
 
 @dataclass(frozen=True, slots=True)
 class PaperFinding:
-    """A verdict, and the error or the reason in words."""
+    """A verdict, and the error or the reason in words; ``u``: U of the error's numbers in words, "" for none."""
 
     verdict: PaperVerdict
     error: str
+    u: str = ""
+
+    @property
+    def words(self) -> str:
+        """Return the error with its U."""
+        return f"{self.error}{self._u}"
+
+    @property
+    def short(self) -> str:
+        """Return the first sentence of the error with its U."""
+        return f"{self.error.partition('. ')[0]}{self._u}"
+
+    @property
+    def _u(self) -> str:
+        return f" (U {self.u})" if self.u else ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,12 +61,32 @@ class PaperItem:
 
 
 @dataclass(frozen=True, slots=True)
+class PaperRow:
+    """A result of a paper, of one item or several: a row of the first table.
+
+    Each entry of ``places`` selects items: "place" all of a place in the paper, "place: beginning" those of it whose
+    statement begins so.
+    """
+
+    result: str
+    places: tuple[str, ...]
+
+    def has(self, item: PaperItem) -> bool:
+        """Return whether an item belongs to this row."""
+        return any(
+            item.where == where and item.states.startswith(begins)
+            for where, _, begins in (place.partition(": ") for place in self.places)
+        )
+
+
+@dataclass(frozen=True, slots=True)
 class Paper:
-    """A paper: its short name, its citation, and its items in the order of its pages."""
+    """A paper: its short name, its citation, its items in the order of its pages, and the rows of the first table."""
 
     name: str
     citation: str
     items: tuple[PaperItem, ...]
+    rows: tuple[PaperRow, ...] = ()
 
 
 def slight(off: float) -> str:
@@ -59,9 +94,16 @@ def slight(off: float) -> str:
     return f"{off:.0e}" if abs(off) >= ROUNDING else f"less than {ROUNDING:.0e}"
 
 
-def judged(holds: bool, error: str) -> PaperFinding:
-    """Return the finding "reproduced", or "refuted" where the item does not hold."""
-    return PaperFinding(PaperVerdict.REPRODUCED if holds else PaperVerdict.REFUTED, error)
+def judged(holds: bool, error: str, u: str = "") -> PaperFinding:
+    """Return the finding "reproduced", or "refuted" where the item does not hold and the U of its numbers is known.
+
+    A refutation without U is none: the difference may be the numbers' own.
+    """
+    if holds:
+        return PaperFinding(PaperVerdict.REPRODUCED, error, u)
+    if not u:
+        return unjudged(f"{error}; without U that refutes nothing")
+    return PaperFinding(PaperVerdict.REFUTED, error, u)
 
 
 def unjudged(reason: str) -> PaperFinding:
@@ -74,23 +116,17 @@ def not_attempted(where: str, states: str, reason: str) -> PaperItem:
     return PaperItem(where, states, "", lambda: unjudged(reason))
 
 
-HEAD = """# The papers, item by item
+HEAD = """# Results of three papers
 
-Every figure, table, equation and statement of three papers, compared with this program and with the papers' own data.
-`tester paper --all` prints this page and computes every number while it runs. The last column names a command that
-shows more; RUN is a run of your own. `docs/paper.md` explains what the items of the first paper mean for a user,
-`docs/explanation/errata-of-the-two-papers.md` lists the misprints of the other two.
+`tester paper --all` prints this page and then every item of the papers, and computes each number while it runs. [The
+paper, item by item](paper.md) explains the first paper, [errata](explanation/errata-of-the-two-papers.md) the others.
 
-| verdict | means |
-|---|---|
-| reproduced | the same comes out here, within the error that is given |
-| refuted | the paper's own data, or its formulas, give something else; the error is given |
-| not attempted | it is a drawing without numbers, or needs what is not printed or not built here; the reason is given |
-
-Rows of the first paper's tables that cannot be read, contradict others or were inferred are evidence for nothing
-here. A law that agrees with figures which it was made from shows that the formulas are right, not that rubber follows
-them. Of the second and third paper no measurement is printed as a number; compounds and surfaces are this program's own
-unless the item states otherwise.
+"Reproduced": the same comes out here, within the given error. "Refuted": the paper's own data or formulas give
+something else. "Not attempted": at least one item is a drawing without numbers, or needs what is not printed or built.
+U (k = 2) is that of the last printed digit: the first paper prints no repeats, so the true U is larger. Rows of its
+tables that cannot be read, contradict others or were inferred are no evidence. A law that agrees with figures which it
+was made from shows that the formulas are right, not that rubber follows them. The second and third paper print no
+measurement as a number; compounds and surfaces are this program's own.
 """
 
 
@@ -106,18 +142,72 @@ def judged_items(paper: Paper) -> list[JudgedItem]:
     return [JudgedItem(entry, entry.work_out()) for entry in paper.items]
 
 
-def page_text(papers: Sequence[Paper]) -> str:
-    """Return the page in Markdown. Raises MissingExtraError."""
-    result = [(paper, judged_items(paper)) for paper in papers]
-    lines = [HEAD, *_summary(result)]
+class JudgedRow(NamedTuple):
+    """A row of the first table with the verdicts of its items."""
+
+    row: PaperRow
+    items: tuple[JudgedItem, ...]
+
+    def of(self, verdict: PaperVerdict) -> list[JudgedItem]:
+        """Return the items of a verdict."""
+        return [entry for entry in self.items if entry.finding.verdict is verdict]
+
+    @property
+    def verdict(self) -> PaperVerdict:
+        """Return "not attempted" where one item is, else "refuted" where one is, else "reproduced"."""
+        for verdict in (PaperVerdict.NOT_ATTEMPTED, PaperVerdict.REFUTED):
+            if self.of(verdict):
+                return verdict
+        return PaperVerdict.REPRODUCED
+
+    @property
+    def words(self) -> str:
+        """Return the numbers or reasons of the items that decide, and how many others there are.
+
+        Of a reproduced row one item is given: the others say the same of other compounds or figures.
+        """
+        given = self.of(self.verdict)[: 1 if self.verdict is PaperVerdict.REPRODUCED else None]
+        phrase = "; ".join(f"{entry.item.where}: {entry.finding.short}" for entry in given)
+        rest = Counter(entry.finding.verdict.value for entry in self.items if entry not in given)
+        others = ", ".join(f"{count} {verdict}" for verdict, count in rest.items())
+        return f"{phrase}. Else {others}" if others else phrase
+
+
+Judged = Sequence[tuple[Paper, list[JudgedItem]]]
+
+
+def judged_papers(papers: Sequence[Paper]) -> Judged:
+    """Return papers with the verdicts of their items, computed by this call. Raises MissingExtraError."""
+    return [(paper, judged_items(paper)) for paper in papers]
+
+
+def rows_of(paper: Paper, items: Sequence[JudgedItem]) -> list[JudgedRow]:
+    """Return a paper's rows of the first table, from its judged items."""
+    return [JudgedRow(row, tuple(entry for entry in items if row.has(entry.item))) for row in paper.rows]
+
+
+def table_text(result: Judged) -> str:
+    """Return the page of results in Markdown: the first table."""
+    rows = {paper.name: rows_of(paper, items) for paper, items in result}
+    counted = Counter(row.verdict for each in rows.values() for row in each)
+    lines = [HEAD, ", ".join(f"{counted[verdict]} {verdict.value}" for verdict in PaperVerdict) + "."]
+    for name, each in rows.items():
+        lines += ["", f"## {name}", "", "| result | verdict | error or reason |", "|---|---|---|"]
+        lines += [_line(row.row.result, row.verdict.value, row.words) for row in each]
+    return "\n".join(lines) + "\n"
+
+
+def items_text(result: Judged) -> str:
+    """Return every item in Markdown, by paper."""
+    lines = ["# Items of the papers", "", *_summary(result)]
     for paper, items in result:
-        lines += ["", f"## {paper.name}", "", paper.citation, ""]
+        lines += ["", f"## Items: {paper.name}", "", paper.citation, ""]
         lines += ["| where | the paper | verdict | error or reason | more |", "|---|---|---|---|---|"]
         lines += [_row(entry) for entry in items]
     return "\n".join(lines) + "\n"
 
 
-def _summary(result: Sequence[tuple[Paper, list[JudgedItem]]]) -> Iterator[str]:
+def _summary(result: Judged) -> Iterator[str]:
     yield f"| paper | {' | '.join(PaperVerdict)} |"
     yield "|---|" + "---|" * len(PaperVerdict)
     for paper, items in result:
@@ -127,5 +217,8 @@ def _summary(result: Sequence[tuple[Paper, list[JudgedItem]]]) -> Iterator[str]:
 
 def _row(entry: JudgedItem) -> str:
     command = f"`{entry.item.command}`" if entry.item.command else ""
-    cells = (entry.item.where, entry.item.states, entry.finding.verdict.value, entry.finding.error, command)
+    return _line(entry.item.where, entry.item.states, entry.finding.verdict.value, entry.finding.words, command)
+
+
+def _line(*cells: str) -> str:
     return f"| {' | '.join(text.replace('|', chr(92) + '|') for text in cells)} |"

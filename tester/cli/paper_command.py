@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 import click
@@ -13,7 +12,7 @@ from tester.cli.text_table import Json, dump
 
 if TYPE_CHECKING:
     from tester.analysis.fit.fit_part import PublishedTable
-    from tester.analysis.papers import Paper
+    from tester.analysis.papers import Judged
 
 
 @command()
@@ -51,30 +50,37 @@ def _table() -> PublishedTable:
 
 
 def _all(as_json: bool) -> int:
-    from tester.analysis.papers import page_text
+    from tester.analysis.papers import items_text, judged_papers, table_text
     from tester.kinds import packaged_papers
 
-    papers = packaged_papers()
+    result = judged_papers(packaged_papers())
     if as_json:
-        dump(_as_json(papers))
+        dump(_as_json(result))
     else:
-        click.echo(page_text(papers), nl=False)
+        click.echo(f"{table_text(result)}\n{items_text(result)}", nl=False)
     return EXIT_DONE
 
 
-def _as_json(papers: Sequence[Paper]) -> Json:
-    from tester.analysis.papers import judged_items
+def _as_json(result: Judged) -> Json:
+    from tester.analysis.papers import rows_of
 
     return {
-        entry.name: [
-            {
-                "where": item.where,
-                "states": item.states,
-                "verdict": finding.verdict.value,
-                "error": finding.error,
-                "command": item.command or None,
-            }
-            for item, finding in judged_items(entry)
-        ]
-        for entry in papers
+        paper.name: {
+            "results": [
+                {"result": row.row.result, "verdict": row.verdict.value, "error": row.words}
+                for row in rows_of(paper, items)
+            ],
+            "items": [
+                {
+                    "where": item.where,
+                    "states": item.states,
+                    "verdict": finding.verdict.value,
+                    "error": finding.error,
+                    "u": finding.u or None,
+                    "command": item.command or None,
+                }
+                for item, finding in items
+            ],
+        }
+        for paper, items in result
     }

@@ -1,24 +1,29 @@
-"""The page of all papers: the command writes the stored page, and every item has a verdict with its numbers."""
+"""The papers' results and items: the command writes the stored page, and every item has a verdict with numbers."""
 
 from __future__ import annotations
 
 import re
 import shlex
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import click
 import pytest
 
 from tester.analysis.papers import (
+    Judged,
     Paper,
     PaperFinding,
     PaperItem,
+    PaperRow,
     PaperVerdict,
+    items_text,
     judged,
+    judged_papers,
     not_attempted,
-    page_text,
+    rows_of,
     slight,
+    table_text,
     unjudged,
 )
 from tester.cli.main import invoke, root
@@ -26,16 +31,20 @@ from tester.kinds import packaged_papers
 
 pytest.importorskip("scipy", reason="needs the extra `report`")
 
-PAGE = Path(__file__).with_name("papers.txt")
-"""As `tester paper --all` printed it last; a change of a verdict or a number is a change of this file."""
+STORED = Path(__file__).with_name("papers.txt")
+PAGE = Path(__file__).parents[3] / "docs" / "papers.md"
+"""Items and page as `python docs/papers.py` wrote them last; a changed verdict or number changes these files."""
+WANTED = Path(__file__).parents[4] / "shared" / "design" / "papers.md"
+"""The list of results to reproduce, where it is at hand."""
+MOST_NOT_ATTEMPTED = 12
 NUMBER = re.compile(r"(?<![\w.])[+-]?\d+\.?\d*(?:e[+-]\d+)?")
 ITEMS = [(paper.name, item) for paper in packaged_papers() for item in paper.items]
 COMMANDS = sorted({item.command for _, item in ITEMS if item.command})
 
 
 @pytest.fixture(scope="module")
-def written() -> str:
-    return page_text(packaged_papers())
+def result() -> Judged:
+    return judged_papers(packaged_papers())
 
 
 def same(a: str, b: str) -> bool:
@@ -54,10 +63,58 @@ def unit(number: str) -> float:
     return 10.0 ** (int(exponent) - decimals) if e else (10.0**-decimals if decimals else 0.0)
 
 
-def test_the_page_is_what_the_command_writes(written: str) -> None:
-    lines, stored = written.splitlines(), PAGE.read_text(encoding="utf-8").splitlines()
+@pytest.mark.parametrize(("path", "text"), [(STORED, items_text), (PAGE, table_text)], ids=["items", "page"])
+def test_what_is_stored_is_what_the_command_writes(path: Path, text: Callable[[Judged], str], result: Judged) -> None:
+    lines, stored = text(result).splitlines(), path.read_text(encoding="utf-8").splitlines()
     assert len(lines) == len(stored)
     assert [(a, b) for a, b in zip(lines, stored, strict=True) if not same(a, b)] == []
+
+
+def wanted() -> list[str]:
+    """Return the results of the first table of the list."""
+    if not WANTED.is_file():
+        pytest.skip("the list of results is not at hand")
+    table = WANTED.read_text(encoding="utf-8").partition("| paper |")[2].partition("\n\n")[0]
+    return [line.split("|")[2].strip() for line in table.splitlines()[2:]]
+
+
+def test_the_page_has_every_wanted_result_as_a_row_of_its_own() -> None:
+    assert [row.result for paper in packaged_papers() for row in paper.rows] == wanted()
+
+
+def test_few_rows_are_not_attempted_and_each_has_its_reason(result: Judged) -> None:
+    rows = [row for paper, items in result for row in rows_of(paper, items)]
+    left = [row for row in rows if row.verdict is PaperVerdict.NOT_ATTEMPTED]
+    assert len(left) <= MOST_NOT_ATTEMPTED
+    assert [row.row.result for row in left if len(row.words) < 20] == []
+
+
+@pytest.mark.parametrize("paper", packaged_papers(), ids=lambda paper: paper.name)
+def test_every_place_of_a_row_selects_an_item(paper: Paper) -> None:
+    places = [place for row in paper.rows for place in row.places]
+    assert [place for place in places if not any(PaperRow("", (place,)).has(item) for item in paper.items)] == []
+
+
+@pytest.mark.parametrize(
+    ("verdicts", "of_row"),
+    [("RR", "reproduced"), ("RF", "refuted"), ("RN", "not attempted"), ("FN", "not attempted")],
+)
+def test_a_row_is_as_good_as_its_least_item(verdicts: str, of_row: str) -> None:
+    findings = {"R": judged(True, "1 %"), "F": judged(False, "9 %", "1 %"), "N": unjudged("no numbers")}
+    items = tuple(PaperItem("Eq 1", str(i), "", lambda one=one: findings[one]) for i, one in enumerate(verdicts))
+    ((paper, found),) = judged_papers([Paper("P", "", items, (PaperRow("Eq", ("Eq 1",)),))])
+    assert [row.verdict.value for row in rows_of(paper, found)] == [of_row]
+
+
+def test_every_refutation_has_numbers_and_their_u(result: Judged) -> None:
+    refuted = [entry for _, items in result for entry in items if entry.finding.verdict is PaperVerdict.REFUTED]
+    assert refuted
+    assert [e.item.states for e in refuted if not (e.finding.u and re.search(r"\d", e.finding.error))] == []
+
+
+def test_without_u_nothing_is_refuted() -> None:
+    assert judged(False, "9 %").verdict is PaperVerdict.NOT_ATTEMPTED
+    assert judged(False, "9 %", "1 %").words == "9 % (U 1 %)"
 
 
 @pytest.mark.parametrize(
@@ -128,11 +185,11 @@ def test_a_verdict_is_worked_out_when_it_is_asked_for() -> None:
 
     def work_out() -> PaperFinding:
         asked.append(1)
-        return judged(len(asked) < 2, str(len(asked)))
+        return judged(len(asked) < 2, str(len(asked)), "" if len(asked) < 2 else "1")
 
     paper = Paper("P", "", (PaperItem("Eq 1", "", "", work_out),))
-    first, second = page_text([paper]), page_text([paper])
-    assert "| reproduced | 1 |" in first and "| refuted | 2 |" in second
+    first, second = items_text(judged_papers([paper])), items_text(judged_papers([paper]))
+    assert "| reproduced | 1 |" in first and "| refuted | 2 (U 1) |" in second
     assert "| P | 1 | 0 | 0 |" in first and "| P | 0 | 1 | 0 |" in second
 
 

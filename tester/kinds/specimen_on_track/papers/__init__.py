@@ -8,6 +8,7 @@ from tester.analysis.papers import Paper
 from tester.kinds.specimen_on_track.papers.adhesion import ADHESION_ITEMS
 from tester.kinds.specimen_on_track.papers.grosch import GROSCH_ITEMS
 from tester.kinds.specimen_on_track.papers.hysteresis import HYSTERESIS_ITEMS
+from tester.kinds.specimen_on_track.papers.table_rows import GRETA_ROWS, GROSCH_ROWS
 from tester.kinds.specimen_on_track.papers.theory import THEORY_ITEMS
 
 PAPERS: Final = (
@@ -16,6 +17,7 @@ PAPERS: Final = (
         "R. S. Sharp, P. Gruber, E. Fina, Circuit Racing, Track Texture, Temperature and Rubber Friction, *Vehicle"
         " System Dynamics* 54 (2016): paper S.",
         (*GROSCH_ITEMS, *THEORY_ITEMS),
+        GROSCH_ROWS,
     ),
     Paper(
         "GrETA",
@@ -23,5 +25,6 @@ PAPERS: Final = (
         " estimation of tyre rubber in sliding contact with road asperities, *Proc. IMechE Part D* (2014), "
         "[doi 10.1177/0954407014521402](https://doi.org/10.1177/0954407014521402): paper G.",
         (*ADHESION_ITEMS, *HYSTERESIS_ITEMS),
+        GRETA_ROWS,
     ),
 )

@@ -134,6 +134,7 @@ def _eq_13() -> PaperFinding:
         False,
         f"m2 is called the rms slope; only with the mean square slope is contact full at {full:.2f} E times the"
         " slope, which is Persson's limit. So it is taken",
+        "0: formulas are compared",
     )
 
 

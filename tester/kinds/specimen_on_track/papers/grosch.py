@@ -87,7 +87,7 @@ def _one_curve() -> PaperFinding:
     return judged(
         worst_k <= 1.0,
         "values of the law `wlf_bell` over 5 temperatures and 9 speeds fall on one curve, Ts off by"
-        f" {', '.join(phrase)}. The rubbers obey WLF by construction: this shows the method",
+        f" {', '.join(phrase)}; the rubbers obey WLF by construction: this shows the method",
     )
 
 
@@ -111,7 +111,7 @@ def _dry_surfaces() -> PaperFinding:
         shown.append(f"{' and '.join(tops)} on {surface}{', talc' if interface == 'talc' else ''}")
     return unjudged(
         f"hysteresis of SBR by `persson` reaches {on['silicon carbide']:.2f} on silicon carbide and {on['glass']:.2f}"
-        " on glass: no law of materials here knows the adhesion that makes the peak on glass. The twin's law"
+        " on glass: no law here knows the adhesion that peaks there. The twin's law"
         f" `two_bells` [A] has maxima of {'; '.join(shown)}, but by construction",
     )
 
@@ -219,13 +219,11 @@ GROSCH_ITEMS: Final = (
               "SBR and ABR: one peak on glass, two on silicon carbide, talc lowers the first; steel between",
               "tester run grosch --rig grosch", _dry_surfaces),
     not_attempted("Fig 7", "the same of butyl",
-                  "butyl ships as a formula [A] with the glass transition of a handbook; its curves are not in"
-                  " numbers"),
+                  "curves without numbers; the butyl that ships is a formula [A]"),
     PaperItem("4", "the peak on a rough track is at 0.15 mm times the loss factor's frequency, for four rubbers",
               "tester master RUN", _rules),
     not_attempted("4", "the peak on a smooth track is at 6 nm times the loss modulus' frequency",
-                  "no law of adhesion over speed is printed, and `persson` has none; `tester master RUN` holds a"
-                  " measured peak against it"),
+                  "no law of adhesion over speed is printed; `tester master RUN` holds a measured peak against it"),
     PaperItem("4", "both ratios are the same for all rubbers", "tester master RUN", _same_for_all),
     PaperItem("4", "frequencies far apart put the peaks close together", "tester master RUN", _far_apart),
     PaperItem("4", "0.15 mm is about the spacing of the grains, 0.14 mm", "", _grains),
@@ -234,8 +232,7 @@ GROSCH_ITEMS: Final = (
                   "contact of single asperities is not modelled; the simulated friction falls with pressure to a power"
                   " that is put in"),
     not_attempted("4, Fig 8", "a racing tread on granite: mu falls from 1 to 7 bar",
-                  "compound and granite are not printed; recipe `pressure` makes the test, and what `persson` gives is"
-                  " below"),
+                  "compound and granite are not printed; recipe `pressure` makes the test"),
     not_attempted("Fig 9", "an analyser of vibrations",
                   "a photograph; `tester materials import dma` reads what such write"),
     PaperItem("Fig 10", "glass is three orders of magnitude stiffer than rubber", "tester materials show SBR", _glassy),

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from math import exp, log
-from statistics import fmean
+from dataclasses import replace
+from math import exp, log, sqrt
 from typing import Final
 
 import numpy as np
@@ -12,12 +12,21 @@ import numpy as np
 from sim.physics.friction import COMPOUNDS, PaperParameters, coefficient, thermal_factor
 from tester.analysis.fit.check import Errors, errors_of
 from tester.analysis.fit.fit_law import FitPoint, by_group
-from tester.analysis.papers import PaperFinding, PaperItem, judged, slight, unjudged
+from tester.analysis.fit.joint import fit_only
+from tester.analysis.papers import PaperFinding, PaperItem, PaperVerdict, judged, slight, unjudged
 from tester.base.arrays import Array
 from tester.kinds.wheel_on_belt.fit.data import Reading, appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, PAPER, SLIP, TEMPERATURE
-from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, errors_on, fitted, of_table_3
+from tester.kinds.wheel_on_belt.fit.published import FIT, VALIDATION, Predicted, by_compound, errors_on, of_table_3
 from tester.kinds.wheel_on_belt.fit.staged import staged_table_3
+from tester.kinds.wheel_on_belt.papers.digits import (
+    COVERAGE,
+    HALF_DIGIT,
+    digits_u,
+    each_once,
+    errors_u,
+    per_cent_u,
+)
 from tester.kinds.wheel_on_belt.papers.paper_rows import COMPOUND_NAMES, readable
 
 COLD_C: Final = 25.0
@@ -41,22 +50,39 @@ def words(errors: Errors) -> str:
 # -- Table 3 ----------------------------------------------------------------------------------------------------------
 
 
-def _off(name: str, compound: str, reading: Reading = Reading.WITHOUT) -> float:
-    result = staged_table_3(appendix(FIT, reading).points)[compound]
-    return getattr(result, name) / getattr(COMPOUNDS[compound], name) - 1.0
+STAGED: Final = each_once(lambda rows: staged_table_3(rows)[rows[0].group])
+"""Table 3 by the paper's way, from rows."""
+
+
+def _off(names: Sequence[str], points: Sequence[FitPoint]) -> list[float]:
+    """Return the relative differences of parameters from Table 3's, compound by compound."""
+    result = STAGED(points)
+    return [
+        getattr(table, name) / getattr(COMPOUNDS[compound], name) - 1.0
+        for compound, table in result.items()
+        for name in names
+    ]
+
+
+def _of(compounds: Sequence[str], reading: Reading = Reading.WITHOUT) -> list[FitPoint]:
+    return [entry for entry in appendix(FIT, reading).points if entry.group in compounds]
 
 
 def _parameters(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
-    off = {(name, compound): _off(name, compound) for compound in compounds for name in names}
-    phrase = ", ".join(f"{name} of {compound} {100.0 * entry:+.2f} %" for (name, compound), entry in off.items())
-    return judged(all(abs(entry) <= SAME for entry in off.values()), phrase)
+    points = _of(compounds)
+    off, u = _off(names, points), digits_u(lambda rows: _off(names, rows), points)
+    labels = [f"{name} of {compound}" for compound in compounds for name in names]
+    phrase = ", ".join(f"{label} {100.0 * entry:+.2f} %" for label, entry in zip(labels, off, strict=True))
+    return judged(all(abs(entry) <= SAME for entry in off), phrase, per_cent_u(u))
 
 
 def _open(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
+    labels = [f"{name} of {compound}" for compound in compounds for name in names]
     phrase = [
         f"{reading.value}: "
         + ", ".join(
-            f"{name} of {entry} {100.0 * _off(name, entry, reading):+.1f} %" for entry in compounds for name in names
+            f"{label} {100.0 * entry:+.1f} %"
+            for label, entry in zip(labels, _off(names, _of(compounds, reading)), strict=True)
         )
         for reading in Reading
     ]
@@ -64,17 +90,29 @@ def _open(names: Sequence[str], compounds: Sequence[str]) -> PaperFinding:
 
 
 def _heat_factor() -> PaperFinding:
-    result = staged_table_3(appendix(FIT).points)
-    off = {
-        name: max(
-            abs(_relative(result[name], celsius) / _relative(printed, celsius) - 1.0)
+    points = appendix(FIT).points
+    off, peaks = _heat_off(points)[:3], _heat_off(points)[3:]
+    u = digits_u(_heat_off, points)
+    phrase = ", ".join(f"{100.0 * entry:.1f} % ({name})" for name, entry in zip(COMPOUNDS, off, strict=True))
+    kelvins = ", ".join(f"{entry:+.1f} K" for entry in peaks)
+    return judged(
+        max(off) <= CURVE,
+        f"f(T) / f(25) off by at most {phrase}; tm off by {kelvins}",
+        f"{per_cent_u(u[:3])}; {', '.join(f'{entry:.1f}' for entry in u[3:])} K",
+    )
+
+
+def _heat_off(points: Sequence[FitPoint]) -> list[float]:
+    """Return each compound's greatest difference of the factor, as a share, then each one's of tm in K."""
+    result = STAGED(points)
+    off = [
+        max(
+            abs(_relative(table, celsius) / _relative(COMPOUNDS[name], celsius) - 1.0)
             for celsius in np.linspace(25.0, 85.0, 61)
         )
-        for name, printed in COMPOUNDS.items()
-    }
-    phrase = ", ".join(f"{100.0 * entry:.1f} % ({name})" for name, entry in off.items())
-    peaks = ", ".join(f"{result[name].tm - printed.tm:+.1f} K" for name, printed in COMPOUNDS.items())
-    return judged(max(off.values()) <= CURVE, f"f(T) / f(25) off by at most {phrase}; tm off by {peaks}")
+        for name, table in result.items()
+    ]
+    return [*off, *(table.tm - COMPOUNDS[name].tm for name, table in result.items())]
 
 
 def _relative(table: PaperParameters, celsius: float) -> float:
@@ -92,7 +130,8 @@ TABLE_3: Final = (
 
 def _together() -> PaperFinding:
     entry, other = _parameters(("b2", "a2"), ("3#",)), _parameters(("b1",), ("2#",))
-    return PaperFinding(max(entry.verdict, other.verdict), f"{entry.error}, {other.error}")
+    both = entry.verdict is other.verdict is PaperVerdict.REPRODUCED
+    return judged(both, f"{entry.error}, {other.error}", f"{entry.u}, {other.u}")
 
 
 # -- Equations --------------------------------------------------------------------------------------------------------
@@ -113,40 +152,54 @@ def _linear(
 
 
 def _eq_1() -> PaperFinding:
-    off: list[Errors] = []
+    off: list[float] = []
+    u: list[float] = []
     for subset in _cold(moving=True).values():
-        result = _linear(
-            lambda entry: (1.0, log(entry.nominal[LOAD]), log(entry.nominal[SLIP])),
-            lambda entry: log(entry.value),
-            subset,
-        )
-        off.append(errors_of([exp(entry) for entry in result.tolist()], [entry.value for entry in subset]))
+        off += _power_law(subset)
+        u += digits_u(_power_law, subset)
     still = [subset.value for rows in _cold(moving=False).values() for subset in rows if subset.nominal[SLIP] == 0.0]
-    phrase = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in off)
+    phrase = ", ".join(f"{100.0 * entry:.1f}" for entry in off)
     return judged(
         False,
         f"fitted at 25 degC: mean error {phrase} % (1#, 2#, 3#) where it slips; at 0 mm/s it gives 0, the data"
         f" {min(still):g} to {max(still):g}",
+        f"{per_cent_u(u)}; {COVERAGE / sqrt(3.0) * HALF_DIGIT:.3f}",
     )
+
+
+def _power_law(subset: Sequence[FitPoint]) -> list[float]:
+    result = _linear(
+        lambda entry: (1.0, log(entry.nominal[LOAD]), log(entry.nominal[SLIP])),
+        lambda entry: log(entry.value),
+        subset,
+    )
+    return [errors_of([exp(entry) for entry in result.tolist()], [entry.value for entry in subset]).mean]
+
+
+def _quadratic_law(subset: Sequence[FitPoint]) -> list[float]:
+    meant = _linear(
+        lambda entry: _meant(entry.nominal[LOAD] / 200.0, entry.nominal[SLIP] / 0.3),
+        lambda entry: entry.value,
+        subset,
+    )
+    return [errors_of(meant.tolist(), [entry.value for entry in subset]).mean]
 
 
 def _eq_2() -> PaperFinding:
     printed: list[int] = []
-    off: list[Errors] = []
+    off: list[float] = []
+    u: list[float] = []
     for subset in _cold(moving=False).values():
         as_printed = np.array([_quadratic(entry.nominal[LOAD] / 200.0, entry.nominal[SLIP] / 0.3) for entry in subset])
         printed.append(int(np.linalg.matrix_rank(as_printed)))
-        meant = _linear(
-            lambda entry: _meant(entry.nominal[LOAD] / 200.0, entry.nominal[SLIP] / 0.3),
-            lambda entry: entry.value,
-            subset,
-        )
-        off.append(errors_of(meant.tolist(), [entry.value for entry in subset]))
-    phrase = ", ".join(f"{100.0 * entry.mean:.1f}" for entry in off)
+        off += _quadratic_law(subset)
+        u += digits_u(_quadratic_law, subset)
+    phrase = ", ".join(f"{100.0 * entry:.1f}" for entry in off)
     return judged(
         False,
         f"as printed p^2 occurs twice: {max(printed)} of 6 coefficients can be told from each other. With a constant"
         f" in place of one, mean error {phrase} % on the rows at 25 degC that were fitted",
+        f"0 of the count; {per_cent_u(u)}",
     )
 
 
@@ -159,25 +212,33 @@ def _meant(p: float, v: float) -> tuple[float, ...]:
 
 
 def _eq_3() -> PaperFinding:
-    energies: list[float] = []
-    for subset in by_group(
-        entry for entry in appendix(FIT).points if entry.nominal[LOAD] == 200.0 and entry.nominal[SLIP] == 0.3
-    ).values():
-        rising = [entry for entry in subset if entry.nominal[TEMPERATURE] <= 70.0]
-        x = np.array([1.0 / (entry.nominal[TEMPERATURE] + CELSIUS_0_K) for entry in rising])
-        slope = float(np.polyfit(x, np.log([entry.value for entry in rising]), 1)[0])
-        energies.append(slope * GAS_J_MOL_K / 1000.0)
-    phrase = ", ".join(f"{entry:.1f}" for entry in energies)
+    rising = [
+        entry for entry in appendix(FIT).points
+        if entry.nominal[1:] == (200.0, 0.3) and entry.nominal[TEMPERATURE] <= 70.0
+    ]  # fmt: skip
+    phrase = ", ".join(f"{entry:.1f}" for entry in _energies(rising))
+    u = ", ".join(f"{entry:.1f}" for entry in digits_u(_energies, rising))
     return judged(
         False,
         f"as printed, exp(+E / RT) with E above 0 falls with temperature; up to 70 degC the data want E = {phrase}"
         " kJ/mol (1#, 2#, 3#), and beyond 70 degC the other sign: no such factor has a peak",
+        f"{u} kJ/mol",
     )
+
+
+def _energies(points: Sequence[FitPoint]) -> list[float]:
+    """Return each compound's E in kJ/mol."""
+    result: list[float] = []
+    for subset in by_group(points).values():
+        x = np.array([1.0 / (entry.nominal[TEMPERATURE] + CELSIUS_0_K) for entry in subset])
+        slope = float(np.polyfit(x, np.log([entry.value for entry in subset]), 1)[0])
+        result.append(slope * GAS_J_MOL_K / 1000.0)
+    return result
 
 
 def _eq_4() -> PaperFinding:
     off: list[float] = []
-    for name, result in staged_table_3(appendix(FIT).points).items():
+    for name, result in STAGED(appendix(FIT).points).items():
         subset = [entry for entry in appendix(FIT).points if entry.group == name and entry.nominal[1:] == (200.0, 0.3)]
         cold = next(entry.value for entry in subset if entry.nominal[TEMPERATURE] == COLD_C)
         off += [thermal_factor(result, entry.nominal[TEMPERATURE]) * cold / entry.value - 1.0 for entry in subset]
@@ -188,37 +249,62 @@ def _eq_4() -> PaperFinding:
 
 
 def _eq_5() -> PaperFinding:
-    predicted = fitted(PAPER, appendix(FIT).points)
-    cold = [entry for entry in appendix(FIT).points if entry.nominal[TEMPERATURE] == COLD_C]
-    heavy = [entry for entry in cold if entry.nominal[LOAD] == 400.0]
-    phrase = ", ".join(
-        f"{100.0 * (entry.value / value - 1.0):+.0f}" for entry, value in zip(heavy, predicted(heavy), strict=True)
-    )
+    points = appendix(FIT).points
+    cold = [entry for entry in points if entry.nominal[TEMPERATURE] == COLD_C]
+    phrase = ", ".join(f"{100.0 * entry:+.0f}" for entry in _heavy(points))
     return judged(
-        errors_on(predicted, cold).largest <= CLAIMED,
+        errors_on(eq_6(points), cold).largest <= CLAIMED,
         f"fitted to appendix A: measured at 400 N and 25 degC {phrase} % off it (1#, 2#, 3#): the load is a factor of"
         " the whole, not of the term of speed",
+        per_cent_u(digits_u(_heavy, points)),
     )
+
+
+_EQ_6: Final = each_once(lambda rows: fit_only(PAPER, rows[0].group, rows))
+
+
+def eq_6(points: Sequence[FitPoint]) -> Predicted:
+    """Return the predictions of Eq 6, fitted to rows with all parameters at once."""
+    return by_compound(PAPER, _EQ_6(points))
+
+
+def _heavy(points: Sequence[FitPoint]) -> list[float]:
+    """Return how far the coefficients at 25 degC and 400 N are off Eq 6, which is fitted to the rows."""
+    heavy = [entry for entry in points if entry.nominal[TEMPERATURE] == COLD_C and entry.nominal[LOAD] == 400.0]
+    return [entry.value / value - 1.0 for entry, value in zip(heavy, eq_6(points)(heavy), strict=True)]
 
 
 def _eq_6() -> PaperFinding:
-    errors = errors_on(fitted(PAPER, appendix(FIT).points), appendix(VALIDATION).points)
-    return judged(errors.near == errors.rows, f"fitted to appendix A, seen on B: {words(errors)}")
+    a, b = appendix(FIT).points, appendix(VALIDATION).points
+    errors = errors_on(eq_6(a), b)
+
+    def sizes(points: Sequence[FitPoint]) -> list[float]:
+        result = errors_on(eq_6(points), b)
+        return [result.mean, result.largest]
+
+    of_fit = per_cent_u(digits_u(sizes, a))
+    return judged(
+        errors.near == errors.rows,
+        f"fitted to appendix A, seen on B: {words(errors)}",
+        f"by A {of_fit}; by B {errors_u(eq_6(a), b)}",
+    )
 
 
 def _t_0() -> PaperFinding:
+    def means(points: Sequence[FitPoint]) -> list[float]:
+        return [errors_on(colder, points).mean, errors_on(of_table_3, points).mean]
+
+    def colder(points: Sequence[FitPoint]) -> list[float]:
+        return of_table_3([replace(entry, measured=_less_25(entry), nominal=_less_25(entry)) for entry in points])
+
     rows = readable()
-    as_it_is = errors_on(of_table_3, rows).mean
-    moved = fmean(
-        abs(
-            coefficient(entry.group, entry.nominal[TEMPERATURE] - COLD_C, entry.nominal[LOAD], entry.nominal[SLIP])
-            / entry.value
-            - 1.0
-        )
-        for entry in rows
-    )
+    moved, as_it_is = means(rows)
     phrase = f"Eqs 7 to 9 are {100.0 * moved:.0f} % off the data in the mean, with T itself {100.0 * as_it_is:.1f} %"
-    return judged(moved <= as_it_is, phrase)
+    return judged(moved <= as_it_is, phrase, per_cent_u(digits_u(means, rows)))
+
+
+def _less_25(entry: FitPoint) -> tuple[float, ...]:
+    return entry.nominal[TEMPERATURE] - COLD_C, *entry.nominal[1:]
 
 
 def _formula(name: str) -> PaperFinding:

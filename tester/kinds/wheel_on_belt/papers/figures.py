@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from math import sqrt
 from typing import Final
 
 from sim.physics.slip import predict
@@ -10,6 +11,7 @@ from tester.analysis.papers import PaperFinding, PaperItem, judged, not_attempte
 from tester.kinds.wheel_on_belt.fit.data import READABLE, rows
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP
 from tester.kinds.wheel_on_belt.fit.published import errors_on, of_table_3
+from tester.kinds.wheel_on_belt.papers.digits import COVERAGE, HALF_DIGIT, errors_u
 from tester.kinds.wheel_on_belt.papers.equations import words
 from tester.kinds.wheel_on_belt.papers.paper_rows import (
     by_compound_words,
@@ -71,6 +73,7 @@ def _sideslip_3() -> PaperFinding:
     return judged(
         not same,
         f"the values are those of 2# ({', '.join(subset['3#'])}), below {straight:g} of 3# at 0 degrees: copied",
+        f"{COVERAGE / sqrt(3.0) * HALF_DIGIT:.3f} of each",
     )
 
 
@@ -87,7 +90,8 @@ def _model(variable: int) -> PaperFinding:
 
     subset = [entry for entry in appendix("appendix-b").points if (entry.nominal[SLIP] == 0.3) is (variable == LOAD)]
     errors = errors_on(of_table_3, subset)
-    return judged(errors.near == errors.rows, f"Eqs 7 to 9 on the rows of appendix B: {words(errors)}")
+    phrase = f"Eqs 7 to 9 on the rows of appendix B: {words(errors)}"
+    return judged(errors.near == errors.rows, phrase, errors_u(of_table_3, subset))
 
 
 FIGURES: Final = (

@@ -103,7 +103,8 @@ def _repeats() -> PaperFinding:
     measure = _recipe("table2").measure
     assert measure is not None
     least = measure.repeats if isinstance(measure.repeats, int) else measure.repeats.at_least
-    return judged(False, f"five in (3), three in (4): they contradict each other; the recipe makes {least}")
+    phrase = f"five in (3), three in (4): they contradict each other; the recipe makes {least}"
+    return judged(False, phrase, "0 of a count")
 
 
 def _steady() -> PaperFinding:

@@ -25,6 +25,7 @@ from tester.kinds.wheel_on_belt.fit.published import (
     scaled,
 )
 from tester.kinds.wheel_on_belt.image.axes import AXES
+from tester.kinds.wheel_on_belt.papers.digits import digits_u, errors_u, fit_u, per_cent_u
 from tester.kinds.wheel_on_belt.papers.equations import CLAIMED, words
 from tester.kinds.wheel_on_belt.papers.paper_rows import (
     COMPOUND_NAMES,
@@ -87,17 +88,25 @@ def _bias_at(
 
 
 def _better() -> PaperFinding:
-    off = {
-        celsius: errors_on(of_table_3, at(over_load(), "1#", celsius=celsius)).mean
-        for celsius in (40.0, 55.0, 70.0, 85.0)
-    }
-    phrase = ", ".join(f"{100.0 * entry:.1f} % at {celsius:g} degC" for celsius, entry in off.items())
-    return judged(max(off[55.0], off[70.0]) < min(off[40.0], off[85.0]), f"mean error {phrase}")
+    celsius = (40.0, 55.0, 70.0, 85.0)
+
+    def means(points: Sequence[FitPoint]) -> list[float]:
+        return [errors_on(of_table_3, at(points, "1#", celsius=one)).mean for one in celsius]
+
+    points = at(over_load(), "1#")
+    off = dict(zip(celsius, means(points), strict=True))
+    phrase = ", ".join(f"{100.0 * entry:.1f} % at {one:g} degC" for one, entry in off.items())
+    return judged(
+        max(off[55.0], off[70.0]) < min(off[40.0], off[85.0]),
+        f"mean error {phrase}",
+        per_cent_u(digits_u(means, points)),
+    )
 
 
 def _others_3() -> PaperFinding:
-    errors = errors_on(of_table_3, [entry for entry in at(over_load(), "3#") if entry.nominal[1] != 300.0])
-    return judged(errors.near == errors.rows, words(errors))
+    subset = [entry for entry in at(over_load(), "3#") if entry.nominal[1] != 300.0]
+    errors = errors_on(of_table_3, subset)
+    return judged(errors.near == errors.rows, words(errors), errors_u(of_table_3, subset))
 
 
 def _few_below(compound: str, celsius: float, of_slip: bool) -> PaperFinding:
@@ -117,8 +126,9 @@ def _log_at_v() -> PaperFinding:
 def _quoted(quoted: Sequence[Quoted], of_scaled: bool) -> PaperFinding:
     subset = quoted_rows(quoted)
     if not of_scaled:
-        off = [abs(value / entry.value - 1.0) for entry, value in zip(subset, of_table_3(subset), strict=True)]
-        return judged(_as_quoted(off, quoted), f"{_per_cent(off)} by Eq 7")
+        off = [abs(entry) for entry in _each_off(subset)]
+        u = per_cent_u(digits_u(_each_off, subset))
+        return judged(_as_quoted(off, quoted), f"{_per_cent(off)} by Eq 7", u)
     ways = {reading: scaled(subset, reading) for reading in Reading}
     result = {
         reading: [abs(values[entry.label] / entry.value - 1.0) for entry in subset]
@@ -129,6 +139,10 @@ def _quoted(quoted: Sequence[Quoted], of_scaled: bool) -> PaperFinding:
         return judged(_as_quoted(result[Reading.WITHOUT], quoted), _per_cent(result[Reading.WITHOUT]))
     phrase = "; ".join(f"{_per_cent(off)} {reading.value}" for reading, off in result.items())
     return unjudged(f"needs A027, which cannot be read: {phrase} (chosen to give these)")
+
+
+def _each_off(points: Sequence[FitPoint]) -> list[float]:
+    return [value / entry.value - 1.0 for entry, value in zip(points, of_table_3(points), strict=True)]
 
 
 def _as_quoted(off: Sequence[float], quoted: Sequence[Quoted]) -> bool:
@@ -144,7 +158,8 @@ def _per_cent(off: Sequence[float]) -> str:
 
 def _within() -> PaperFinding:
     errors = errors_on(of_table_3, appendix(VALIDATION).points)
-    return judged(errors.near == errors.rows, f"Eqs 7 to 9 on appendix B: {words(errors)}")
+    phrase = f"Eqs 7 to 9 on appendix B: {words(errors)}"
+    return judged(errors.near == errors.rows, phrase, errors_u(of_table_3, appendix(VALIDATION).points))
 
 
 def _appendix_a() -> PaperFinding:
@@ -154,6 +169,7 @@ def _appendix_a() -> PaperFinding:
         counted["suspect"] + counted["inferred"] == 0,
         f"{phrase}; without repeated rows and sideslip {len(appendix(FIT).points)} are fitted. As text it was read by"
         " machine: columns drift",
+        "0 of a count",
     )
 
 
@@ -163,6 +179,7 @@ def _appendix_b() -> PaperFinding:
     return judged(
         counted["suspect"] + counted["missing"] == 0,
         f"{phrase}; {len(appendix(VALIDATION).points)} are held against laws",
+        "0 of a count",
     )
 
 
@@ -214,13 +231,21 @@ def _paper_exponent() -> PaperFinding:
     low, high = (coefficient("1#", 25.0, 200.0 * factor, 0.3) for factor in (0.999, 1.001))
     of_paper = log(high / low) / log(1.001 / 0.999)
     subset = by_group(readable())["1#"]
-    a, b = predict(V2_LAW, fit_only(V2_LAW, "1#", subset), [_moved(subset[0], 1, factor) for factor in (0.999, 1.001)])
-    of_data = log(b / a) / log(1.001 / 0.999)
+    parameters = fit_only(V2_LAW, "1#", subset)
+    of_data = _of_load(parameters, subset)
+    u = fit_u(V2_LAW, parameters, subset, lambda moved: _of_load(moved, subset))
     return judged(
         abs(of_paper / of_data - 1.0) <= 0.1,
         f"Eq 7 falls with the load to the power {of_paper:+.2f}, the data of 1# to {of_data:+.2f}: a run on the twin,"
         " which rubs by Eq 7, shows the first",
+        f"{u:.3f} of the second",
     )
+
+
+def _of_load(parameters: Sequence[float], points: Sequence[FitPoint]) -> float:
+    """Return the exponent of the load of v2 with a compound's parameters."""
+    a, b = predict(V2_LAW, parameters, [_moved(points[0], 1, factor) for factor in (0.999, 1.001)])
+    return log(b / a) / log(1.001 / 0.999)
 
 
 def _variables() -> PaperFinding:
