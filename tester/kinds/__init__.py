@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from tester.analysis.papers import Paper
     from tester.base.source import Tree
     from tester.inputs.rig import Rig
+    from tester.inputs.rig.profiles import LawCopies
 
 DEFAULT: Final = "wheel_on_belt"
 """Kind of a rig file without the key ``kind``."""
@@ -92,16 +93,21 @@ def packaged_papers() -> tuple[Paper, ...]:
     return tuple(paper for kind in kinds if kind.papers is not None for paper in kind.papers())
 
 
-def load_rig(source: str | Path = SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
+def load_rig(
+    source: str | Path = SIMULATED,
+    overrides: Sequence[str] = (),
+    accept_risk: str = "",
+    copies: LawCopies | None = None,
+) -> Rig:
     """Return the rig of a file, or the packaged rig of that name; raises InvalidSource
     (tester.inputs.rig.rig_files)."""
     from tester.inputs.rig.rig_files import load
 
     kind, tree = _opened(source)
-    return load(kind.rig(), tree, overrides, accept_risk)
+    return load(kind.rig(), tree, overrides, accept_risk, copies or {})
 
 
-def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
+def load_rig_text(text: str | Path, name: str | None = None, copies: LawCopies | None = None) -> Rig:
     """Return the rig of a text or a file that a run has stored; raises InvalidSource with every problem.
 
     Its risks were accepted when the run began; a resumed run asks for them (tester.run.session).
@@ -110,7 +116,7 @@ def load_rig_text(text: str | Path, name: str | None = None) -> Rig:
     from tester.inputs.rig.rig_files import checked
 
     tree = load_tree(text, name or ("rig.yaml" if isinstance(text, str) else None))
-    return checked(_kind_of(tree).rig(), tree)
+    return checked(_kind_of(tree).rig(), tree, copies or {})
 
 
 def packaged_keys(source: str | Path, overrides: Sequence[str] = ()) -> tuple[str, ...]:

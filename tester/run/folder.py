@@ -18,10 +18,13 @@ from tester.machine.run_parts import History, Part
 from tester.machine.time_left import Earlier, PartTime
 from tester.run.endings import CannotStartError
 from tester.run.kind_lookup import checked_recipe, load_rig_text, recipe_part, run_parts
+from tester.run.run_materials import law_copies
 from tester.run.set_up import GoodRun
 from tester.store.disk import write_text
+from tester.store.record_schema import StoreError
 from tester.store.records import RunInfo, SpecimenInfo
 from tester.store.resumable import ResumePoint
+from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 
 PARTS = "parts"
@@ -103,8 +106,17 @@ def write_sources(folder: Path, recipe_text: str, rig: Rig) -> None:
 
 def read_work(folder: Path) -> Work:
     """Return the work in a run's folder; raises InvalidSource if its files are no longer valid."""
-    rig = load_rig_text(folder / "rig.yaml")
+    rig = load_rig_text(folder / "rig.yaml", _law_copies(folder))
     return work_of(checked_recipe(folder / "recipe.yaml", rig).recipe, rig)
+
+
+def _law_copies(folder: Path) -> dict[str, str]:
+    """Return the copies of kept laws that the run's record lists, none before it has begun."""
+    try:
+        with RunReader(folder) as reader:
+            return law_copies(folder, reader.run().info.materials)
+    except StoreError:
+        return {}
 
 
 def make_folder(out: Path, name: str) -> Path:

@@ -11,6 +11,7 @@ from tester import kinds
 from tester.analysis.ring_errors import RingRun
 from tester.base.source import InvalidSource, Problem, read_tree
 from tester.inputs.rig import Rig
+from tester.inputs.rig.profiles import LawCopies
 from tester.kinds import PACKAGED, UnknownKindError, find
 from tester.results.run_results import RingPart
 from tester.store.run_reader import RunReader
@@ -92,21 +93,28 @@ def _brought(rig: Rig, what: str, part: Callable[[], Part] | None) -> Callable[[
     return part
 
 
-def load_rig(source: str | Path = kinds.SIMULATED, overrides: Sequence[str] = (), accept_risk: str = "") -> Rig:
+def load_rig(
+    source: str | Path = kinds.SIMULATED,
+    overrides: Sequence[str] = (),
+    accept_risk: str = "",
+    copies: LawCopies | None = None,
+) -> Rig:
     """Return the rig of a file, or the packaged rig of that name (tester.inputs.rig.rig_files.load).
 
     Raises InvalidSource, also for a valid rig whose kind cannot run recipes.
     """
-    return to_be_run(kinds.load_rig(source, overrides, accept_risk))
+    return to_be_run(kinds.load_rig(source, overrides, accept_risk, copies))
 
 
-def load_rig_text(text: str | Path) -> Rig:
+def load_rig_text(text: str | Path, copies: LawCopies | None = None) -> Rig:
     """Return the rig of a stored text or file; raises InvalidSource as ``load_rig``.
+
+    ``copies``: the copies of kept laws in the run's folder (tester.run.run_materials.law_copies).
 
     Its risks are not checked here: they were accepted when the run began, and are checked when it resumes
     (tester.run.session).
     """
-    return to_be_run(kinds.load_rig_text(text))
+    return to_be_run(kinds.load_rig_text(text, copies=copies))
 
 
 @dataclass(frozen=True, slots=True)

@@ -13,14 +13,24 @@ from pathlib import Path
 
 from tester.base import clock
 from tester.base.source import read_tree
+from tester.inputs.materials.files import MaterialFile
 from tester.inputs.recipe.plan import Plan
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.rig import Rig
+from tester.inputs.rig.profiles import LawCopies
 from tester.machine.result_keeping import condition_records
 from tester.run.folder import write_sources
 from tester.run.kind_lookup import checked_recipe, load_rig, load_rig_text, recipe_part
 from tester.run.provenance import PACKAGED, accepted_risks, calibration_of, session_info
-from tester.run.run_materials import KeptFile, kept_files, put_back, used_materials, write_materials
+from tester.run.run_materials import (
+    KeptFile,
+    kept_files,
+    law_copies,
+    law_file,
+    put_back,
+    used_materials,
+    write_materials,
+)
 from tester.store.records import LOOSE_KEYS, Change, ConditionInfo, SessionInfo, StoredCondition, StoredRun, risk_text
 from tester.store.resumable import ResumePoint, resume_point
 from tester.store.run_reader import RunReader
@@ -72,6 +82,8 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
     """
     with RunReader(folder) as reader:
         run, stored, point = reader.run(), reader.conditions(), resume_point(reader)
+    # The rig's law is read with the rig, so its copy is put back first.
+    laws, _ = put_back(folder, [file for file in run.info.materials if file.role == "law"])
     found = _found(folder, run, point.session, reason)
     if found.changes and not reason:
         subjects, where = ", ".join(found.subjects), "; ".join(found.where)
@@ -102,7 +114,7 @@ def prepare(folder: Path, reason: str, operator: str, accept_risk: str = "") -> 
         seed=run.info.seed or 0,
         point=point,
         begin=_beginning(folder, session, found, to_come, added, risks, reason),
-        summary=_summary(folder, point, len(conditions), restored),
+        summary=_summary(folder, point, len(conditions), [*laws, *restored]),
     )
 
 
@@ -138,13 +150,16 @@ def _beginning(
 
 
 def _added_materials(folder: Path, run: StoredRun, recipe: Recipe, found: Found) -> tuple[KeptFile, ...]:
-    """Return the files that the changed recipe names in addition; files already recorded stay as they are."""
-    if "recipe" not in found.subjects:
-        return ()
+    """Return the files that the changed recipe or rig names in addition; files already recorded stay as they are."""
     recorded = run.info.materials
-    source = Path(found.recipe_source) if found.recipe_source else folder / "recipe.yaml"
-    used = used_materials(recipe, source, [file.name for file in recorded if file.role != "data"])
-    return kept_files(used.files, [file.file for file in recorded])
+    added: list[MaterialFile] = []
+    if "recipe" in found.subjects:
+        source = Path(found.recipe_source) if found.recipe_source else folder / "recipe.yaml"
+        added += used_materials(recipe, source, [file.name for file in recorded if file.role != "data"]).files
+    if "rig" in found.subjects:
+        copies = law_copies(folder, recorded).values()
+        added += [file for file in law_file(found.rig) if str(file.path) not in copies]
+    return kept_files(added, [file.file for file in recorded])
 
 
 def _summary(folder: Path, point: ResumePoint, conditions: int, restored: Sequence[str]) -> str:
@@ -160,15 +175,19 @@ def _summary(folder: Path, point: ResumePoint, conditions: int, restored: Sequen
 
 def _found(folder: Path, run: StoredRun, session: int, reason: str) -> Found:
     where: list[str] = []
-    stored = run.info.rig_text
+    stored, copies = run.info.rig_text, law_copies(folder, run.info.materials)
     recipe_text, recipe_source = _present(
         run.info.recipe_text, folder / "recipe.yaml", _text_of, run.info.recipe_source, _recipe_at_source(run), where
     )
     rig_text, rig_source = _present(
-        stored, folder / "rig.yaml", lambda path: _rig_text(path, stored), run.info.rig_source, _rig_at_source(run),
+        stored,
+        folder / "rig.yaml",
+        lambda path: _rig_text(path, stored, copies),
+        run.info.rig_source,
+        _rig_at_source(run, copies),
         where,
     )
-    rig = load_rig_text(rig_text)
+    rig = load_rig_text(rig_text, copies)
     figures = calibration_sha256(calibration_of(rig))
     utc = clock.utc_now()
     changes = [
@@ -206,12 +225,12 @@ def _text_of(path: Path) -> str:
     return read_tree(path)[0].text
 
 
-def _rig_text(path: Path | str, stored: str, overrides: Sequence[str] = ()) -> str:
+def _rig_text(path: Path | str, stored: str, copies: LawCopies, overrides: Sequence[str] = ()) -> str:
     """Return a rig file's present text; the stored text if it describes the same rig and only an older version wrote
     it.
     """
-    rig = load_rig(path, overrides, LATER)
-    return stored if rig == load_rig_text(stored) else rig.text
+    rig = load_rig(path, overrides, LATER, copies)
+    return stored if rig == load_rig_text(stored, copies) else rig.text
 
 
 def _recipe_at_source(run: StoredRun) -> str | None:
@@ -221,12 +240,12 @@ def _recipe_at_source(run: StoredRun) -> str | None:
     return _text_of(Path(source))
 
 
-def _rig_at_source(run: StoredRun) -> str | None:
+def _rig_at_source(run: StoredRun, copies: LawCopies) -> str | None:
     """Return the rig file's present text; None for a packaged rig, which changes only with the program."""
     where, *overrides = shlex.split(run.info.rig_source) or [""]
     if not (Path(where).is_absolute() and Path(where).is_file()):
         return None
-    return _rig_text(where, run.info.rig_text, overrides)
+    return _rig_text(where, run.info.rig_text, copies, overrides)
 
 
 def _begun(stored: StoredCondition) -> bool:

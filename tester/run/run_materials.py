@@ -83,6 +83,14 @@ def law_file(rig: Rig) -> tuple[MaterialFile, ...]:
     return tuple(_law_file(path) for path in files)
 
 
+def law_copies(folder: Path, stored: Iterable[StoredMaterial]) -> dict[str, str]:
+    """Return the copies of kept laws in a run's folder, by the path of the original.
+
+    The original may have changed, or be gone, since the run began: what reads the run's rig again reads the copy.
+    """
+    return {law.source: str((folder / law.file).resolve()) for law in stored if law.role == "law"}
+
+
 def _law_file(path: Path) -> MaterialFile:
     from tester.inputs.kept_laws.law_value import load_law
 

@@ -15,6 +15,7 @@ from tester.base.screen import MachineView, PlotView, Value, trend_columns
 from tester.machine.panel import Wanted
 from tester.results.run_results import results_of
 from tester.run.kind_lookup import load_rig_text, served_kind
+from tester.run.run_materials import law_copies
 from tester.service.protocol import Event
 from tester.service.state_view import (
     ClientsView,
@@ -171,7 +172,7 @@ def load(folder: Path) -> Playback:
     with RunReader(folder) as reader:
         results = results_of(reader)
         run = results.run
-        rig = load_rig_text(run.info.rig_text)
+        rig = load_rig_text(run.info.rig_text, law_copies(folder, run.info.materials))
         kind = served_kind(rig)
         events = tuple(
             Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
@@ -199,9 +200,7 @@ def drawn_as(quantities: Quantities, shown: Sequence[Value], kind: MachineView) 
     if kind.trend == columns:
         return kind
     drawn = [(spec, screen_of(channel).trend) for spec, channel in zip(shown, quantities.shown, strict=True)]
-    plots = [
-        PlotView(spec.key, column, 0.02 * (spec.scale_high - spec.scale_low)) for spec, column in drawn if column
-    ]
+    plots = [PlotView(spec.key, column, 0.02 * (spec.scale_high - spec.scale_low)) for spec, column in drawn if column]
     return MachineView("", columns, tuple(plots[:PLOTS]))
 
 

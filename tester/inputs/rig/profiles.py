@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Final, cast
+from types import MappingProxyType
+from typing import Final, TypeAlias, cast
 
 from drivers.profiles import DeviceProfile, ProfileError, load_profile, profile_names, read_profile
 from sim.physics.laws import LawMaker, OfMaterials
@@ -60,6 +62,20 @@ def _find_beside(part: dict[str, Value], folder: Path) -> None:
 
 LAW_KEYS: Final = (("sim", "friction_model"), ("sim", "law"))
 """Keys of a rig file that name a law of friction."""
+
+
+LawCopies: TypeAlias = Mapping[str, str]
+"""Copies of kept laws in a run's folder, by the absolute path of the original."""
+NO_COPIES: Final[LawCopies] = MappingProxyType({})
+
+
+def take_copies(tree: Tree, copies: LawCopies) -> None:
+    """Replace the path of a kept law by that of its copy: a run goes by the law that it began with."""
+    for section_key, key in LAW_KEYS:
+        section = tree.data.get(section_key) if isinstance(tree.data, dict) else None
+        law = section.get(key) if isinstance(section, dict) else None
+        if isinstance(section, dict) and isinstance(law, str):
+            section[key] = copies.get(law, law)
 
 
 def is_law_file(name: str) -> bool:

@@ -15,7 +15,15 @@ from tester.base.source import InvalidSource, Problem, Tree, Value, load_tree
 from tester.inputs.rig.checks import problems_of
 from tester.inputs.rig.config import Rig
 from tester.inputs.rig.packaged import complete, new_tree, resolve
-from tester.inputs.rig.profiles import LAW_KEYS, extension_drive, extension_law, is_law_file
+from tester.inputs.rig.profiles import (
+    LAW_KEYS,
+    NO_COPIES,
+    LawCopies,
+    extension_drive,
+    extension_law,
+    is_law_file,
+    take_copies,
+)
 from tester.inputs.rig.risks import Risk, apart, beyond, counts_as_simulated, loosened, redescribed
 
 OneRig = TypeVar("OneRig", bound=Rig)
@@ -27,7 +35,9 @@ _MAY_TIGHTEN = "and --set may only tighten the file of a real rig"
 _DESCRIBES = "and only the file of a real rig describes the machine"
 
 
-def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_risk: str = "") -> OneRig:
+def load(
+    kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_risk: str = "", copies: LawCopies = NO_COPIES
+) -> OneRig:
     """Return the rig of a file's tree; changes the tree.
 
     ``overrides`` are ``a.b.c=value`` texts, each replacing one key of the file; the value is read as in the file.
@@ -37,14 +47,14 @@ def load(kind: type[OneRig], tree: Tree, overrides: Sequence[str] = (), accept_r
     """
     texts = tuple(overrides)
     if not texts:
-        rig = checked(kind, tree)
+        rig = checked(kind, tree, copies)
         return _accepted(rig, None, tree, accept_risk)
-    stated = checked(kind, deepcopy(tree))  # faults of the file itself come first, under its own name
+    stated = checked(kind, deepcopy(tree), copies)  # faults of the file itself come first, under its own name
     problems = [problem for number, text in enumerate(texts) for problem in _override(tree, text, number)]
     if problems:
         raise InvalidSource(problems)
     try:
-        rig = checked(kind, tree)
+        rig = checked(kind, tree, copies)
         return _accepted(rig, stated, tree, accept_risk)
     except InvalidSource as error:
         raise InvalidSource([_attributed(problem, texts) for problem in error.problems]) from error
@@ -93,8 +103,9 @@ def _accepted(rig: OneRig, stated: OneRig | None, tree: Tree, reason: str) -> On
     return rig
 
 
-def checked(kind: type[OneRig], tree: Tree) -> OneRig:
+def checked(kind: type[OneRig], tree: Tree, copies: LawCopies = NO_COPIES) -> OneRig:
     """Return a tree as a rig with consistent sections, risks or not; changes the tree. Raises InvalidSource."""
+    take_copies(tree, copies)
     unstated = complete(kind, tree)
     resolve(kind, tree)
     unstated_keys = [tree.problem(place[:-1], f"{place[-1]} is missing; {MISSING}") for place in unstated]
