@@ -17,7 +17,7 @@ MOST = 200
 
 def export_law(path: str, solver: str, out: Path | None, area_mm2: float | None, points: str) -> None:
     """Write a law's table to a file, or to stdout. Raises UsageError, InvalidSource."""
-    from tester.inputs.kept_laws.law_value import load_law
+    from tester.inputs.kept_laws.law_materials import read_law
     from tester.report.solver_tables import SOLVERS, Points, solver_table
 
     if solver not in SOLVERS:
@@ -26,7 +26,7 @@ def export_law(path: str, solver: str, out: Path | None, area_mm2: float | None,
     if len(numbers) != 3 or not all(2 <= number <= MOST for number in numbers):
         expected = f"SPEEDSxPRESSURESxTEMPERATURES, each 2 to {MOST}, such as 20x20x10"
         raise click.UsageError(f"--points {points} (expected {expected})")
-    law = load_law(Path(path))
+    law = read_law(Path(path))
     try:
         table = solver_table(law, Points(*numbers), area_mm2)
     except ValueError as error:

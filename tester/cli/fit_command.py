@@ -82,7 +82,7 @@ def fit(
     """
     from tester.analysis.fit.fit_law import FitError, by_group
     from tester.analysis.fit.joint import fit_group
-    from tester.cli.keep_law import keep
+    from tester.cli.keep_law import Given, keep
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
     part = _part(fitted.kind)
@@ -99,7 +99,7 @@ def fit(
     rows = by_group(others.points) if others is not None else None
     table = part.published_table() if check else None
     if out is not None:
-        keep(out, fits, fitted.kind.name, part, area, force)
+        keep(out, fits, fitted.kind.name, part, area, force, Given(surface, figures))
     if as_json:
         dump(_as_json(law, fits, rows, fitted, force, table))
     else:

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from hashlib import sha256
 from pathlib import Path
-from typing import TYPE_CHECKING, Final
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Final, NamedTuple
 
 import click
 
@@ -15,21 +16,40 @@ from tester.base.trouble import in_words
 
 if TYPE_CHECKING:
     from tester.analysis.fit.fit_law import FitPoint
-    from tester.analysis.fit.fit_part import FitPart
+    from tester.analysis.fit.fit_part import FitPart, MadeOf
     from tester.analysis.fit.joint import GroupFit
     from tester.inputs.kept_laws.law_schema import FittedData, KeptLawModel, LawRange
 
 GIVEN: Final = "given to the fit (--area)"
+GIVEN_THERE: Final = "of the fit (--given area)"
 
 
-def keep(out: Path, fits: Sequence[GroupFit], kind: str, part: FitPart, area_mm2: float | None, force: bool) -> None:
+class Given(NamedTuple):
+    """What a fit of a law of materials was given: a surface, "" for the runs' own, and figures."""
+
+    surface: str = ""
+    figures: Mapping[str, float] = MappingProxyType({})
+
+
+NOTHING_GIVEN: Final = Given()
+
+
+def keep(
+    out: Path,
+    fits: Sequence[GroupFit],
+    kind: str,
+    part: FitPart,
+    area_mm2: float | None,
+    force: bool,
+    given: Given = NOTHING_GIVEN,
+) -> None:
     """Write each fit into a file, whose name is printed; of several, each name gets the group's name added.
 
     Raises FitError for a law that is not kept, UsageError for a file that is there or cannot be written.
     """
     from tester.inputs.kept_laws.law_schema import law_text
 
-    texts = {_path(out, fit, len(fits)): law_text(kept_model(fit, kind, part, area_mm2)) for fit in fits}
+    texts = {_path(out, fit, len(fits)): law_text(kept_model(fit, kind, part, area_mm2, given)) for fit in fits}
     if len(texts) < len(fits):
         listed = ", ".join(one.group for one in fits)
         raise click.UsageError(f"--out: the files of {listed} would have the same name")
@@ -53,14 +73,20 @@ def _path(out: Path, fit: GroupFit, count: int) -> Path:
     return out.with_name(f"{out.stem}-{name}{out.suffix}")
 
 
-def kept_model(fit: GroupFit, kind: str, part: FitPart, area_mm2: float | None = None) -> KeptLawModel:
+def kept_model(
+    fit: GroupFit, kind: str, part: FitPart, area_mm2: float | None = None, given: Given = NOTHING_GIVEN
+) -> KeptLawModel:
     """Return a fit as the content of a file; raises FitError."""
     from tester.analysis.fit.fit_law import FitError
     from tester.inputs.kept_laws.law_schema import FORMAT, FORMS, KeptLawModel, KeptParameter
 
     law, subject = fit.law, part.subject(fit.group)
     if law.name not in FORMS:
-        raise FitError(f"the law {law.name} is made of files and is not kept (expected one of {', '.join(FORMS)})")
+        raise FitError(f"the law {law.name} is not kept (expected one of {', '.join(FORMS)})")
+    made = part.made_of(law, fit.group, given.surface, given.figures)
+    if made is not None and area_mm2 is not None:
+        raise FitError(f"--area: the law {law.name} has its area from the fit (expected --given area=MM2 there)")
+    area_mm2 = area_mm2 if made is None else made.area_mm2
     fitted = [i for i, parameter in enumerate(law.parameters) if parameter.name not in fit.held]
     parameters = {
         one.name: KeptParameter(
@@ -71,12 +97,20 @@ def kept_model(fit: GroupFit, kind: str, part: FitPart, area_mm2: float | None =
     shown = {True: "no", False: "yes", None: "unknown"}
     model = KeptLawModel.model_construct(
         kept_law=FORMAT, form=law.name, formula=law.formula, kind=kind, compound=subject.compound,
-        interface=subject.interface, surface=subject.surface, parameters=parameters, constants=dict(law.constants),
+        interface=subject.interface, surface=subject.surface if made is None else made.surface, parameters=parameters,
+        constants=dict(law.constants) if made is None else dict(made.figures),
         covariance=[[float(value) for value in row] for row in fit.covariance], scatter=fit.lack.residual,
         degrees_of_freedom=len(fit.points) - len(fitted), describes=shown[fit.lack.shown], range=_range(fit),
-        area=area_mm2, area_source=GIVEN if area_mm2 is not None else "", data=_data(fit.points), content="0" * 64,
+        area=area_mm2, area_source=_area_source(made, area_mm2),
+        made_of={} if made is None else dict(made.hashes), data=_data(fit.points), content="0" * 64,
     )  # fmt: skip
     return model.model_copy(update={"content": model.hash()})
+
+
+def _area_source(made: MadeOf | None, area_mm2: float | None) -> str:
+    if made is not None:
+        return GIVEN_THERE
+    return GIVEN if area_mm2 is not None else ""
 
 
 def _range(fit: GroupFit) -> LawRange:

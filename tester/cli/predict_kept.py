@@ -13,7 +13,8 @@ from tester.base.words import Json
 from tester.cli.options import print_json
 from tester.cli.stored_runs import kind_in, print_left_out, run_folder
 from tester.cli.text_table import dump, shown
-from tester.inputs.kept_laws.law_value import KeptLaw, Predicted, load_law
+from tester.inputs.kept_laws.law_materials import read_law
+from tester.inputs.kept_laws.law_value import KeptLaw, Predicted
 
 if TYPE_CHECKING:
     from tester.analysis.fit.fit_law import FitPoint
@@ -27,7 +28,7 @@ def predict_kept(
 
     Raises ValueError for another compound or an impossible condition, InvalidSource.
     """
-    kept = load_law(Path(path))
+    kept = read_law(Path(path))
     if compound is not None:
         kept.of(compound)
     at = temperature_c, load_n, slip_m_s
@@ -72,7 +73,7 @@ def compare_kept(run: str, path: str, *, as_json: bool) -> None:
 
 def beside(run: str, path: str) -> tuple[KeptLaw, list[Beside], list[tuple[str, str]]]:
     """Return a kept law, the conditions of a run beside it, and those that it does not cover with the reason."""
-    kept, folder = load_law(Path(path)), run_folder(run)
+    kept, folder = read_law(Path(path)), run_folder(run)
     kind, model = kind_in(folder), kept.model
     if kind.name != model.kind or kind.fits is None:
         raise click.UsageError(f"{path} is a law of the kind {model.kind}, {run} is of {kind.name}")

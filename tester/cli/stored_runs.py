@@ -63,7 +63,7 @@ def kind_of(info: RunInfo) -> Kind | None:
 
 def material_of(results: RunResults, law: str, published: bool) -> Material:
     """Return the material of a run's figures; an unknown law is a usage error."""
-    from tester.inputs.kept_laws.law_value import load_law
+    from tester.inputs.kept_laws.law_materials import read_law
     from tester.inputs.rig.profiles import is_law_file
     from tester.report.charts import ChartValue, Material, values_of
 
@@ -79,7 +79,7 @@ def material_of(results: RunResults, law: str, published: bool) -> Material:
     if not law:
         return Material(measured, beside)
     if is_law_file(law):
-        kept = load_law(Path(law))
+        kept = read_law(Path(law))
         if results.run.info.kind != kept.model.kind:
             raise click.UsageError(f"--law: {law} is of the kind {kept.model.kind}, not {results.run.info.kind}")
         for doubt in kept.doubts:

@@ -71,6 +71,16 @@ class LawPlace(NamedTuple):
     speed_m_s: float
 
 
+class MadeOf(NamedTuple):
+    """What a fitted law of materials is made of: the surface's name, the area in mm2, further figures that were given,
+    and the hashes of the files of compound and surface."""
+
+    surface: str
+    area_mm2: float
+    figures: Mapping[str, float]
+    hashes: Mapping[str, str]
+
+
 class FitPart:
     """A kind's contribution to fitting. Defaults: no conditions ship with the program, and nothing is published."""
 
@@ -100,6 +110,10 @@ class FitPart:
         if surface or figures:
             raise FitError(f"the law {law.name} takes no surface and no figures")
         return law
+
+    def made_of(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> MadeOf | None:
+        """Return what a law of materials is made of for a group, None for a law of figures alone; raises FitError."""
+        return None
 
     def subject(self, group: str) -> Subject:
         """Return what a group of conditions is of."""

@@ -13,13 +13,15 @@ from typing import Annotated, Final, Literal, TypeAlias
 from pydantic import Field, model_validator
 
 from sim.physics import laws
+from sim.physics.fitted import FITTED_FIGURES
 from tester.base.units import Quantity, as_text
 from tester.base.validation import Section
 
 FORMAT: Final = 1
-Form: TypeAlias = Literal["v2", "paper", "power", "wlf_bell"]
-FORMS: Final = ("v2", "paper", "power", "wlf_bell")
-"""Laws that are kept: their figures are all that they need. A law of materials also needs files."""
+Form: TypeAlias = Literal["v2", "paper", "power", "wlf_bell", "persson", "greta"]
+OF_FIGURES: Final = ("v2", "paper", "power", "wlf_bell")
+FORMS: Final = (*OF_FIGURES, *FITTED_FIGURES)
+"""Laws that are kept. Those of ``FITTED_FIGURES`` are made of a compound's and a surface's file too."""
 Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=200)]
 Words: TypeAlias = Annotated[str, Field(max_length=2000)]
 Hash: TypeAlias = Annotated[str, Field(pattern=r"^[0-9a-f]{64}$")]
@@ -94,6 +96,10 @@ class KeptLawModel(Section, frozen=True):
     area: Annotated[float, Quantity("mm2", gt=0)] | None = None
     """nominal area of contact: makes a pressure of the load"""
     area_source: Words = ""
+    made_of: dict[Literal["compound", "surface"], Hash] = Field(
+        default_factory=dict[Literal["compound", "surface"], str]
+    )
+    """of persson and greta: hashes of the files of compound and surface, with their data"""
     data: Annotated[list[FittedData], Field(min_length=1, max_length=1000)]
     content: Hash
     """hash of all that is above"""
@@ -107,9 +113,15 @@ class KeptLawModel(Section, frozen=True):
         """Return the figures of the law (``sim.physics.laws.make``)."""
         return {name: one.value for name, one in self.parameters.items()} | self.constants
 
+    @property
+    def of_materials(self) -> bool:
+        """Return whether the law is made of a rubber and a surface."""
+        return self.form in FITTED_FIGURES
+
     def hash(self) -> str:
         """Return the hash of the content."""
-        content = self.model_dump(exclude={"content"})
+        # Without the key where it is empty: files of laws of figures alone are older than it.
+        content = self.model_dump(exclude={"content"} if self.made_of else {"content", "made_of"})
         return sha256(json.dumps(content, sort_keys=True, ensure_ascii=False).encode()).hexdigest()
 
     @model_validator(mode="after")
@@ -126,7 +138,14 @@ class KeptLawModel(Section, frozen=True):
         for name, one in self.parameters.items():
             if one.logarithm and not one.value > 0.0:
                 raise ValueError(f"parameters: {name} is {one.value:g} (expected above 0: it has a logarithm)")
-        laws.make(self.form, self.compound, self.figures())
+        if not self.of_materials:
+            laws.make(self.form, self.compound, self.figures())
+            return self
+        missing = [name for name in FITTED_FIGURES[self.form] if name not in self.parameters]
+        given = {"made_of": len(self.made_of) == 2, "surface": bool(self.surface), "area": self.area is not None}
+        missing += [name for name, there in given.items() if not there]
+        if missing:
+            raise ValueError(f"form: {self.form} needs {', '.join(missing)}")
         return self
 
 
@@ -159,6 +178,9 @@ def law_text(model: KeptLawModel) -> str:
         f"  load: [{', '.join(as_text(one, 'N') for one in model.range.load)}]",
         f"  speed: [{', '.join(as_text(one, 'm/s') for one in model.range.speed)}]",
     ]
+    if model.made_of:
+        hashes = ", ".join(f"{name}: {quote(value)}" for name, value in model.made_of.items())
+        lines.append(f"made_of: {{{hashes}}}")
     if model.area is not None:
         lines += [f"area: {as_text(model.area, 'mm2')}", f"area_source: {quote(model.area_source, ensure_ascii=False)}"]
     lines.append("data:")

@@ -12,6 +12,8 @@ from typing import Final, NamedTuple
 from pydantic import ValidationError
 
 from sim.physics import laws
+from sim.physics.fitted import fitted_law
+from sim.physics.materials import Rubber, Surface
 from tester.analysis.quantiles import t_quantile
 from tester.base.source import InvalidSource, Problem, read_tree
 from tester.base.validation import problems_of
@@ -42,11 +44,27 @@ class KeptLaw:
     """The file's name."""
     doubts: tuple[str, ...] = ()
     """What is doubtful everywhere: an edited file, a law that does not describe its conditions."""
+    made_of: tuple[Rubber, Surface] | None = None
+    """The materials of a law that is made of them."""
 
     @cached_property
     def law(self) -> laws.FrictionLaw:
         """Return the law at its parameters."""
-        return laws.make(self.model.form, self.model.compound, self.model.figures())
+        return self._with(self.model.figures())
+
+    def _with(self, figures: Mapping[str, float]) -> laws.FrictionLaw:
+        model = self.model
+        if not model.of_materials:
+            return laws.make(model.form, model.compound, figures)
+        assert self.made_of is not None and model.area is not None  # law_materials reads both
+        return fitted_law(model.form, *self.made_of, {**figures, "area": model.area})
+
+    def on(self, rubber: Rubber, surface: Surface, area_mm2: float, figures: Mapping[str, float]) -> laws.LawOfParts:
+        """Return the law of materials for a rig's contact (``sim.physics.laws.OfMaterials``); raises ValueError."""
+        self.of(rubber.name, figures)
+        if surface.name != self.model.surface:
+            raise ValueError(f"{self.name} is the law on {self.model.surface!r}, not on {surface.name!r}")
+        return fitted_law(self.model.form, rubber, surface, {**self.model.figures(), "area": area_mm2})
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         """Return the coefficient (``FrictionLaw.mu``)."""
@@ -96,8 +114,7 @@ class KeptLaw:
         return near
 
     def _moved(self, name: str, value: float) -> laws.FrictionLaw:
-        model = self.model
-        return laws.make(model.form, model.compound, model.figures() | {name: value})
+        return self._with(self.model.figures() | {name: value})
 
     def of(self, compound: str, figures: Mapping[str, float] = laws.NO_FIGURES) -> KeptLaw:
         """Return itself for its own compound (``sim.physics.laws.PlainMaker``). Raises ValueError for any other."""
@@ -112,7 +129,10 @@ class KeptLaw:
 
 
 def load_law(path: Path) -> KeptLaw:
-    """Read a kept law. Raises InvalidSource with every problem."""
+    """Read a kept law, without the materials of which it may be made (``law_materials``).
+
+    Raises InvalidSource with every problem.
+    """
     tree, problems = read_tree(path)
     if not isinstance(tree.data, dict):
         raise InvalidSource([*problems, Problem(tree.name, 1, 1, _EXPECTED)])

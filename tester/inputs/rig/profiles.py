@@ -91,7 +91,10 @@ def extension_law(name: str) -> LawMaker | None:
     if is_law_file(name):
         from tester.inputs.kept_laws.law_value import load_law  # needs pydantic
 
-        return load_law(Path(name)).of
+        kept = load_law(Path(name))
+        if kept.model.of_materials:
+            return OfMaterials(kept.on, slow=True, version=int(kept.model.hash()[:8], 16))
+        return kept.of
     if ":" not in name and name not in plugins().names("laws"):
         return None
     maker = plugins().load("laws", name)

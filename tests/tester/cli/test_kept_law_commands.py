@@ -61,14 +61,14 @@ def test_a_kept_law_holds_parameters_range_source_and_hash(home: Path, capsys: p
     assert kept.doubts == () and model.hash() == model.content
 
 
-def test_it_is_not_overwritten_and_a_law_of_files_is_not_kept(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_is_not_overwritten_and_an_unknown_law_is_not_kept(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     keep(capsys)
     assert "exists already" in done(capsys, "fit", "one", "-o", "law.yaml", code=2)[1]
     done(capsys, "fit", "one", "-o", "law.yaml", "--force", "--law", "paper", code=1)
     assert load_law(Path("law.yaml")).model.describes == "no"
     fit = fit_group(V2_LAW, "1#", run_points(home / "runs" / "one").points, FITS.cells, count=20)
-    with pytest.raises(FitError, match="is made of files and is not kept"):
-        kept_model(replace(fit, law=replace(V2_LAW, name="greta")), "wheel_on_belt", FITS)
+    with pytest.raises(FitError, match="the law new is not kept"):
+        kept_model(replace(fit, law=replace(V2_LAW, name="new")), "wheel_on_belt", FITS)
     made_track_run(home / "runs" / "track", metadata={"abrasive": "S0"})
     assert invoke(["fit", "track", "-o", "bell.yaml"]) == 0
     capsys.readouterr()

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Final
 
 from tester.analysis.fit.fit_law import FitError, Law, Sourced
-from tester.analysis.fit.fit_part import FitPart, LawPlace, Subject
+from tester.analysis.fit.fit_part import FitPart, LawPlace, MadeOf, Subject
 from tester.base.axes import Setpoint
 from tester.base.source import InvalidSource
 from tester.kinds.specimen_on_track.axes import INTERFACES, held_by
@@ -62,6 +62,23 @@ class TrackFits(FitPart):
             return bound(materials.rubber(wanted.compound), materials.surface(named), figures)
         except (ValueError, InvalidSource) as error:
             raise FitError(f"{group}: {error}") from error
+
+    def made_of(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> MadeOf | None:
+        """Return the files of a law of materials; raises FitError."""
+        if law.name not in OF_MATERIALS:
+            return None
+        from tester.inputs.kept_laws.law_materials import content_hash
+        from tester.inputs.materials.library import Library
+        from tester.kinds.specimen_on_track.fit.persson_fit import AREA_MM2
+
+        wanted, library = group_of(group), self._materials()
+        named = surface or wanted.surface
+        if not isinstance(library, Library):
+            raise FitError(f"{group}: the law {law.name} is kept with the files of its materials, and there are none")
+        files = {"compound": library.compound(wanted.compound).file, "surface": library.surface_file(named).file}
+        rest = {name: value for name, value in figures.items() if name != "area"}
+        hashes = {role: content_hash(file) for role, file in files.items()}
+        return MadeOf(named, figures.get("area", AREA_MM2), rest, hashes)
 
     def subject(self, group: str) -> Subject:
         return Subject(*group_of(group))

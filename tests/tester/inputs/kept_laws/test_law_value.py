@@ -11,7 +11,7 @@ import pytest
 from sim.physics import laws
 from tester.analysis.quantiles import t_quantile
 from tester.base.source import InvalidSource
-from tester.inputs.kept_laws.law_schema import FORMS
+from tester.inputs.kept_laws.law_schema import OF_FIGURES
 from tester.inputs.kept_laws.law_value import KeptLaw, load_law
 from tester.inputs.materials.stated_law import units_of
 from tester.kinds import load_rig
@@ -26,7 +26,7 @@ def kept(folder: Path, text: str) -> KeptLaw:
 
 
 def test_a_law_is_read_back_as_written(tmp_path: Path) -> None:
-    model = example(area="540 mm2", area_source="footprint, ink", interface="dry", surface="a \"belt\"")
+    model = example(area="540 mm2", area_source="footprint, ink", interface="dry", surface='a "belt"')
     from tester.inputs.kept_laws.law_schema import law_text
 
     found = kept(tmp_path, law_text(model))
@@ -84,7 +84,7 @@ def test_a_law_that_does_not_describe_its_data_is_doubted(tmp_path: Path, word: 
         ("value: 0.6", "value: -0.6", "expected above 0"),
         ("n0: 200.0", "n9: 200.0", "power has no n9"),
         ("kept_law: 1", "kept_law: 2", "kept_law"),
-        ("content: \"", "content: \"x", "content"),
+        ('content: "', 'content: "x', "content"),
     ],
 )
 def test_what_is_wrong_is_refused_at_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
@@ -112,14 +112,12 @@ def test_it_is_the_law_of_its_own_compound_alone(tmp_path: Path) -> None:
         kept(tmp_path, example_text(interface="wet")).of("own")
 
 
-@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("form", OF_FIGURES)
 def test_every_form_is_a_law_with_figures(form: str) -> None:
     assert units_of(form)
 
 
-def test_a_rig_file_and_an_override_name_it_and_it_is_absolute(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_a_rig_file_and_an_override_name_it_and_it_is_absolute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     path = tmp_path / "law.yaml"
     path.write_text(example_text(), encoding="utf-8")
