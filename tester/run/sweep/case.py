@@ -40,7 +40,7 @@ class SweepTask:
     recipe_text: str
     rig_text: str
     materials: tuple[KeptFile, ...] = ()
-    """Files of the recipe's compounds and surface."""
+    """Files of the recipe's compounds and surface, and of the kept law of the rig."""
 
 
 @dataclass(frozen=True, slots=True)

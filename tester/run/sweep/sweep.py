@@ -18,7 +18,7 @@ from tester.base.trouble import MisuseError, in_words
 from tester.run.folder import make_folder
 from tester.run.kind_lookup import checked_recipe, load_rig, served_kind
 from tester.run.pool import WorkerPool
-from tester.run.run_materials import kept_files, used_materials
+from tester.run.run_materials import kept_files, law_file, used_materials
 from tester.run.sweep.case import CaseResult, SweepTask, not_run, run_case
 from tester.run.sweep.grid import SweepAxis, overrides_of, points_of
 from tester.run.sweep.sweep_files import SweepFiles, write_sources
@@ -93,7 +93,9 @@ def prepare_sweep(options: SweepOptions) -> Sweep:
         recipe = checked_recipe(path, rig)
         name, recipe_text, rig_text = recipe.recipe.recipe, recipe.tree.text, rig.text
         axes = recipe.recipe.axes
-        materials = kept_files(used_materials(recipe.recipe, path).files)
+        materials = kept_files([*used_materials(recipe.recipe, path).files, *law_file(rig)])
+        for stored in (file.stored for file in materials if file.stored.role == "law"):
+            rig_text = rig_text.replace(stored.source, stored.file)  # its copy beside the rig file, on any machine
         tasks += [
             SweepTask(len(tasks) + i, point, seed, recipe_text, rig_text, materials)
             for i, seed in enumerate(seeds, start=1)

@@ -16,6 +16,7 @@ from tester.run.sweep import sweep as module
 from tester.run.sweep.case import CaseResult, SweepTask, run_case
 from tester.run.sweep.grid import axes_of
 from tester.run.sweep.sweep import NotSimulatedError, Sweep, SweepOptions, carry_out, local, prepare_sweep
+from tests.tester.inputs.kept_laws.kept_example import example_text
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.run.sweep.results import result, row
 
@@ -80,6 +81,15 @@ def test_tasks_are_point_after_point_and_seed_after_seed(tmp_path: Path) -> None
 def test_a_value_that_the_rig_file_refuses_is_named_before_anything_runs(tmp_path: Path) -> None:
     with pytest.raises(InvalidSource, match=r"sim\.noise=loud"):
         sweep_of(tmp_path, "sim.noise=0,loud")
+
+
+def test_a_kept_law_goes_with_its_task(tmp_path: Path) -> None:
+    law = tmp_path / "law.yaml"
+    law.write_text(example_text(compound="1#"), encoding="utf-8")
+    (task,) = sweep_of(tmp_path, f"sim.friction_model={law}", seeds=1).tasks
+    law.unlink()
+    found = run_case(task)
+    assert (found.exit_code, found.missing) == (0, 0)
 
 
 def test_a_real_rig_is_refused(tmp_path: Path) -> None:
