@@ -111,7 +111,7 @@ def _dry_surfaces() -> PaperFinding:
         shown.append(f"{' and '.join(tops)} on {surface}{', talc' if interface == 'talc' else ''}")
     return unjudged(
         f"hysteresis of SBR by `persson` reaches {on['silicon carbide']:.2f} on silicon carbide and {on['glass']:.2f}"
-        " on glass: no law here knows the adhesion that peaks there. The twin's law"
+        " on glass: no law of materials knows the adhesion that peaks there. The twin's law"
         f" `two_bells` [A] has maxima of {'; '.join(shown)}, but by construction",
     )
 
