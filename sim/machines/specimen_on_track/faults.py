@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Iterator
 from enum import Enum
 from functools import partial
-from math import nan
 from typing import Final
 
 from sim.faults import cabinet, can, common, drives, modbus
@@ -18,6 +17,7 @@ from sim.faults.kinds import FaultKind
 from sim.faults.language import FaultLanguage
 from sim.faults.scene import Scene, switched
 from sim.faults.sensors import QuantityFault, SensorFault, controller_output
+from sim.machines.specimen_on_track.plant import IN_HOLDER
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.nodes.motion import VelocityAxis
 
@@ -72,7 +72,7 @@ def cell_deaf(scene: Scene, on: bool, now: float) -> None:
 @switched
 def specimen_lost(scene: Scene, on: bool, now: float, holder_mu: float) -> None:
     """The specimen leaves its holder, which then grinds on the track with this coefficient."""
-    scene.machine(TrackRig).plant.lose(max(holder_mu, 0.0) if on else nan)
+    scene.machine(TrackRig).plant.lose(max(holder_mu, 0.0) if on else IN_HOLDER)
 
 
 @switched

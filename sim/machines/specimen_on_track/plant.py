@@ -13,7 +13,7 @@ Every public attribute is the truth.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import copysign, exp, nan, sin
+from math import copysign, exp, sin
 from typing import Final
 
 from sim.noise import NormalStream, StickSlip, normal, uniforms
@@ -21,6 +21,8 @@ from sim.physics.laws import NO_SETTING, FrictionLaw, LawSetting
 from sim.physics.track import Interface, TrackParameters
 from sim.sensors import TemperatureSensor
 
+IN_HOLDER: Final = -1.0
+"""In place of a holder's coefficient: the specimen has not left it."""
 DISC_RADIUS_MM: Final = 60.0
 """Radius of the track on a disc, mm [A]."""
 SPECIMEN_SIGMA: Final = 0.03
@@ -87,8 +89,8 @@ class TrackPlant:
         """Way of the track."""
         self.worn_mm = 0.0
         """Height that the specimen has lost by wear."""
-        self.holder_mu: float = nan
-        """Coefficient of the bare holder on the track; NaN while the specimen is in the holder."""
+        self.holder_mu = IN_HOLDER
+        """Coefficient of the bare holder on the track; IN_HOLDER while the specimen is in the holder."""
         self.deaf = False
         """Whether the cell has no part in the force: it shows its zero, drift and noise."""
         self.ground_m = 0.0
@@ -112,7 +114,7 @@ class TrackPlant:
         self._repeat = 1.0
         self.specimen_c = self.parameters.ambient
         self.slid_m = self.worn_mm = self.ground_m = 0.0
-        self.holder_mu = nan
+        self.holder_mu = IN_HOLDER
         self._release()
         self._place = (specimen,)
         self._key_streams()
@@ -185,7 +187,7 @@ class TrackPlant:
         self._warm(dt, chamber_percent)
 
     def lose(self, holder_mu: float) -> None:
-        """Let the specimen come out of its holder, which then grinds with this coefficient; NaN puts it back."""
+        """Let the specimen come out of its holder, which then grinds with this coefficient; IN_HOLDER puts it back."""
         self.holder_mu = holder_mu
 
     def _height(self, lift_mm: float) -> float:
@@ -195,7 +197,7 @@ class TrackPlant:
         if carried_mm >= 0.0:
             return carried_mm
         rests_mm = -contact.protrusion
-        if self.holder_mu != self.holder_mu and self.compound:
+        if self.holder_mu == IN_HOLDER and self.compound:
             grown_mm = contact.expansion * (self.specimen_c - p.ambient) - self.load_n / contact.squeeze
             rests_mm = max(rests_mm, grown_mm - self.worn_mm)
         if p.motion == "disc":
@@ -213,7 +215,7 @@ class TrackPlant:
             return
         contact, speed = self.parameters.contact, abs(track_m_s)
         mu = law.mu(self.specimen_c, self.load_n, speed) * self._specimen * self._repeat * self.grip
-        bare = self.holder_mu == self.holder_mu
+        bare = self.holder_mu != IN_HOLDER
         if bare:
             mu = self.holder_mu
         if self._stick_slip is not None:

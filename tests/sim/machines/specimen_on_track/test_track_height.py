@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from math import isnan
 
 import pytest
 
+from sim.machines.specimen_on_track.plant import IN_HOLDER
 from sim.physics.track import TrackParameters
 from tests.sim.machines.specimen_on_track.test_track_plant import CLEAN, lowered, slid
 
@@ -60,7 +60,7 @@ def test_a_new_specimen_takes_the_place_of_a_lost_one() -> None:
     plant.lose(0.02)
     plant.worn_mm = 1.0
     plant.install(1, "SBR")
-    assert isnan(plant.holder_mu) and plant.worn_mm == 0.0
+    assert plant.holder_mu == IN_HOLDER and plant.worn_mm == 0.0
 
 
 def test_a_deaf_cell_shows_no_force() -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 from tester.inputs.recipe.conditions import metadata_of
@@ -76,6 +78,13 @@ def test_the_question_at_mounting_lists_the_checks() -> None:
     recipe = load_checked(text(more="checklist: [face flat, clamp at 2 Nm]\n"), RIG, PART).recipe
     notes = [getattr(step, "note", "") for step in PART.expand(recipe, RIG).steps]
     assert "die 3; check: face flat; clamp at 2 Nm" in notes
+
+
+def test_the_example_of_the_page_is_valid() -> None:
+    page = (Path(__file__).parents[4] / "docs" / "how-to" / "describe-a-compound.md").read_text(encoding="utf-8")
+    example = page.partition("## What is put on")[2].partition("```yaml\n")[2].partition("```")[0]
+    recipe = f"recipe: page\nkind: specimen_on_track\n{example.replace('tread A', 'SBR')}{REST}"
+    assert not problems(recipe)
 
 
 def test_a_checklist_is_short_enough_to_read() -> None:
