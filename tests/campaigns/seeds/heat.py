@@ -60,6 +60,9 @@ UNLIKE: Final = {
 Air that is 8 K off trips "surface off model" before anything is heated. Losses of +20 % at 85 degC trip "hub hotter
 than shown": a hub sensor and a thermometer that both read low look the same."""
 
+SAMPLED: Final = ("as believed", "hub capacity -25 %", "heater power -20 %", "losses +15 %")
+"""Lives of a sample. Each of the others learns a ratio that is near that of one of these."""
+
 
 class Heard(NullRecorder):
     """Keeps what a run says of its heat and its trips."""
@@ -115,8 +118,7 @@ def live(name: str, seed: int) -> Life:
 
 def figures(sweeps: Sweeps) -> Iterator[Figure]:
     """Yield what every life knew in its last run, and how many trips there were."""
-    seeds = 5 if sweeps.full else 1
-    cases = [(name, seed) for seed in range(seeds) for name in UNLIKE]
+    cases = [(name, seed) for seed in range(5) for name in UNLIKE] if sweeps.full else [(name, 0) for name in SAMPLED]
     names, numbers = zip(*cases, strict=True)
     trips = 0
     with ProcessPoolExecutor(sweeps.jobs) as pool:
