@@ -24,7 +24,7 @@ def content_hash(file: MaterialFile) -> str:
 
 
 def read_law(path: Path) -> KeptLaw:
-    """Read a kept law with the materials of which it may be made. Raises InvalidSource with every problem."""
+    """Read a kept law, and its compound and surface if it has any. Raises InvalidSource with every problem."""
     kept = load_law(path)
     if not kept.model.of_materials:
         return kept

@@ -129,7 +129,7 @@ class KeptLaw:
 
 
 def load_law(path: Path) -> KeptLaw:
-    """Read a kept law, without the materials of which it may be made (``law_materials``).
+    """Read a kept law, without its compound and surface (``law_materials``).
 
     Raises InvalidSource with every problem.
     """

@@ -1,6 +1,6 @@
 """Uncertainty from the printed digits: the appendices give coefficients to two decimals, and no repeats.
 
-A printed coefficient m stands for m - 0.005 to m + 0.005, each value as likely as another: standard uncertainty
+A printed coefficient m stands for m - 0.005 to m + 0.005, with equal probability: standard uncertainty
 0.005 / sqrt(3) (GUM 4.3.7), carried through a result by the change that each coefficient makes to it (GUM 5.1.2,
 Eq 10). The scatter of the paper's repeats is not printed, so a true U is larger.
 """
