@@ -7,15 +7,10 @@ from typing import Any, Final
 
 from tester.base.screen import SoakView
 from tester.machine.context import AnyContext
+from tester.machine.trend import Trend
 
 SHOW_S: Final = 1.0
 """Period for reporting the progress of a wait, s."""
-FADES: Final = 0.98
-"""Share of a change that counts in the next scan: that of a second ago counts 0.7 to 0.8 [A]."""
-SURE: Final = 4.0
-"""A temperature further from its band's edge than so many of its changes from scan to scan does not reach it soon [A]:
-ten standard deviations of noise.
-"""
 
 
 class SoakWait:
@@ -35,9 +30,7 @@ class SoakWait:
         """Time since when the temperature has been in its band; infinite outside."""
         self.shown_s: float = -inf
         self.reached = False
-        self._shown_c = nan
-        self._moved_k = 0.0
-        """The greatest change from one scan to the next, which fades."""
+        self._trend = Trend()
 
     def over(self, ctx: AnyContext, work: str, shown_c: float, *, valid: bool = True) -> bool:
         """Return whether the wait is over, soaked or given up (``reached``), at the temperature of this scan.
@@ -50,10 +43,7 @@ class SoakWait:
             self.shown_s = ctx.now + SHOW_S
             ctx.progress.phase = f"{work} {shown_c:.1f} of {self.target_c:.1f} degC"
         inside = valid and abs(shown_c - self.target_c) <= self.within_k
-        moved_k = abs(shown_c - self._shown_c)
-        self._shown_c = shown_c
-        faded_k = FADES * self._moved_k
-        self._moved_k = moved_k if moved_k > faded_k else faded_k
+        self._trend.follow(shown_c)
         self.since_s = min(self.since_s, ctx.now) if inside else inf
         self.reached = ctx.now - self.since_s >= self.for_s
         return self.reached or ctx.now - self.began_s > self.at_most_s
@@ -62,8 +52,8 @@ class SoakWait:
         """Return the rig time for which the wait surely continues, s: while the temperature is far from its band's
         edge.
         """
-        off_k = abs(self._shown_c - self.target_c)
-        if not abs(off_k - self.within_k) > SURE * self._moved_k:
+        off_k = abs(self._trend.last_c - self.target_c)
+        if not self._trend.far(abs(off_k - self.within_k)):
             return 0.0
         left_s = self.at_most_s - (ctx.now - self.began_s)
         if off_k <= self.within_k:
