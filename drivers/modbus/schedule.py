@@ -26,7 +26,8 @@ _EARLY_S: Final = 1e-3
 
 
 class Schedule:
-    """The requests of one line. Of the due requests, the one that has waited longest is sent first.
+    """The requests of one line. Of the due requests, the one that has waited longest is sent first; of two that have
+    waited as long, the one enabled first.
 
     ``wants_s``: there is nothing to choose before it (s). ``latest_s``: the time at which the first request not under
     way has waited as long as it may.
@@ -98,7 +99,7 @@ class Schedule:
                     continue
                 if request.period_s == 0.0 and not scan and not request.attempts:
                     continue
-                if due < rank:
+                if due < rank - _TINY_S:
                     # The request chosen so far joins the others.
                     before, chosen, rank = chosen, request, due
                     if before is None:

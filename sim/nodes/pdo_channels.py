@@ -21,6 +21,8 @@ LAST_CYCLIC: Final = 240
 _EVENT: Final = 254
 _COB_EXTENDED: Final = 0x2000_0000
 _MAX_ENTRIES: Final = 4
+_TINY_S: Final = 1e-9
+"""Times that differ by less are equal: sums of a clock's floats are not exact, s."""
 
 
 def _restricted(cob_id: int) -> bool:
@@ -261,7 +263,7 @@ class TransmitPdo:
         if data == self.sent and t < self.due_s:
             return False
         free_s = self.sent_s + self.inhibit_s
-        if t < free_s:
+        if t < free_s - _TINY_S:
             self.due_s = min(self.due_s, free_s)
             return False
         return True
