@@ -12,6 +12,7 @@ import math
 import zlib
 from collections.abc import Iterator
 from copy import copy
+from operator import length_hint
 from typing import Final
 
 import numpy as np
@@ -66,6 +67,17 @@ class NormalStream:
             return four
         self._draw()
         return next(self.fours)
+
+    @property
+    def drawn(self) -> int:
+        """How many numbers have been drawn."""
+        first, later = BLOCKS
+        return 0 if not self._block else first + (self._block - 1) * later - length_hint(self.numbers)
+
+    def skip(self, count: int) -> None:
+        """Draw ``count`` numbers, at least 0, and forget them."""
+        for _ in range(count):
+            self.next()
 
     def _hold(self, numbers: Iterator[float]) -> None:
         self.numbers = numbers

@@ -108,8 +108,9 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
     def calm(self) -> tuple[float, ...]:
         """Return the temperatures of a machine on which only heat flows, degC; () while anything else may happen.
 
-        Every axis is then at rest and unloaded. By default every scan is made: a kind takes part whose results do not
-        depend on readings in such a time (``tester.machine.leaps``), and whose readings can be moved (``later``).
+        Every axis is then unloaded, and at rest or at its constant speed. By default every scan is made: a kind takes
+        part whose results do not depend on readings in such a time (``tester.machine.leaps``), and whose readings can
+        be moved (``later``).
         """
         return ()
 

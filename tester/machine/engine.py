@@ -17,6 +17,7 @@ SOONEST_S: Final = 5e-4
 
 # Bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _RUN: Final = Mode.RUN
+_COOLDOWN: Final = Mode.COOLDOWN
 _HOLD: Final = Mode.HOLD
 _STOPPING: Final = Mode.STOPPING
 _FAST_STOP: Final = Mode.FAST_STOP
@@ -69,6 +70,7 @@ class Engine:
             if self._renew_by_s > -inf and not self._renewed(now):
                 self.next_scan_s += self.period_s
                 self.ctx.now = now  # no scan follows at once: a request is dated now, not at the leap's end
+                devices.apply(self.control.state.setpoints)  # a setpoint that is not asked for is not renewed
             else:
                 self._scan(now)
         deadline = devices.transmit(now - leapt_s, scan=scan, next_scan_s=self.next_scan_s - leapt_s) + leapt_s
@@ -99,7 +101,8 @@ class Engine:
     def _renewed(self, now: float) -> bool:
         """Return whether the first scan after a leap is due: then every device has reported anew."""
         devices: DeviceList = self.devices
-        quiet = not devices.lost and not devices.alarm() and self.control.state.mode is _RUN
+        mode = self.control.state.mode
+        quiet = not devices.lost and not devices.alarm() and (mode is _RUN or mode is _COOLDOWN)
         if quiet and now < self._renew_by_s - 1e-7:
             return False
         self._renew_by_s = -inf

@@ -1,9 +1,9 @@
 """Leaps: on a simulated rig in virtual time, time in which only heat flows passes without scans.
 
-``Leaps.hindered`` decides and gives the reason. Wires, drives and drivers do not notice a leap: their clock stands
-still. The plant's heat flows, controllers run their loops, and each device draws the noise of the readings that it was
-not asked for. A leap lasts a common multiple of the periods in which devices are read: after it each is where it would
-have been, and noise belongs to a moment.
+Every axis is then at rest, or turns unloaded at a constant speed. ``Leaps.hindered`` decides and gives the reason.
+Wires, drives and drivers do not notice a leap: their clock stands still. The plant's heat flows, controllers run their
+loops, and each device draws the noise of the readings that it was not asked for. A leap lasts a common multiple of the
+periods in which devices are read: after it each is where it would have been, and noise belongs to a moment.
 
 After a leap the wires run for ``RENEW_S`` before the next scan, so that it finds readings of every device.
 """
@@ -22,8 +22,10 @@ from tester.machine.executor import Executor
 from tester.machine.state import Mode
 from tester.store.journal_records import LEAP
 
-LOOP_S: Final = 0.5
-"""Common multiple of the cycles of simulated controllers (``sim.nodes.control_loop``), s."""
+LOOP_S: Final = 1.0
+"""Common multiple of the cycles of simulated controllers (``sim.nodes.control_loop``), and of what turns in a
+cool-down, s.
+"""
 USUAL_S: Final = 9.0
 """A leap lasts so many common periods as fit in this, s [A]: filters of readings restart after ten seconds."""
 MOST_S: Final = 20.0
@@ -34,6 +36,7 @@ MOST_K: Final = 1.0
 """No leap while a temperature changes by more in its time, K [A]: a chamber at full output moves by 0.9 K in 9 s."""
 _TINY_S: Final = 1e-6
 _RUN: Final = Mode.RUN
+_COOLDOWN: Final = Mode.COOLDOWN
 
 
 class LeapingWorld(Protocol):
@@ -65,9 +68,12 @@ class Leaps:
         self._step = -1
         self._period_s = self._leap_s = 0.0
         self._calm_s = inf
-        """Since when nothing but heat has changed, rig s."""
+        """Since when readings are counted, while nothing but heat changes, rig s."""
+        self._before: dict[str, dict[int, int]] = {}
         self._each: dict[str, dict[int, int]] = {}
-        """The readings of each device in the time of a leap."""
+        """The readings of each device in the time of a leap, once two such times have had as many: after a change it
+        takes the lines some seconds to repeat themselves.
+        """
         self._before_s = 0.0
         self._before_c: tuple[float, ...] = ()
         """An earlier moment and its temperatures, for their rates."""
@@ -77,7 +83,8 @@ class Leaps:
         engine = self.engine
         ctx: AnyContext = engine.ctx
         control: AnyControl = engine.control
-        if control.state.mode is not _RUN:
+        mode = control.state.mode
+        if mode is not _RUN and mode is not _COOLDOWN:
             self._report()  # a run that stops here begins no other step
         if ctx.progress.step != self._step:
             self._report()
@@ -93,7 +100,7 @@ class Leaps:
         if self._calm_s == inf:
             self._begin(now, ctx.calm())
         if not self._each and now - self._calm_s >= self._leap_s - _TINY_S:
-            self._each = self.world.readings_since()
+            self._count(now)
         if self.hindered(now):
             return later
         self._before_s, self._before_c = now, ctx.calm()
@@ -110,14 +117,16 @@ class Leaps:
         state = control.state
         if ctx.moving or ctx.repeat_key:
             return "something moves or is measured"
-        if state.mode is not _RUN or state.trip is not None:
+        if state.mode is not _RUN and state.mode is not _COOLDOWN:
             return f"the rig is in {state.mode.value}"
+        if state.trip is not None:
+            return "the rig has tripped"
         if state.held:
             return "a row of the interlock table holds"
         if ctx.prompts.waiting is not None:
             return "a person is asked"
         if not ctx.calm():
-            return "not every axis is at rest and unloaded, or this kind of machine makes every scan"
+            return "an axis moves or is loaded, heat is on, or this kind of machine makes every scan"
         if engine.devices.busy() or engine.devices.lost or engine.devices.alarm():
             return "a drive is being set up, or reports something"
         return ""
@@ -132,13 +141,20 @@ class Leaps:
         if self._leap_s > MOST_S:
             return "the periods of the devices have no short common multiple"
         ctx: AnyContext = self.engine.ctx
-        executor: Executor[AnyContext] = self.engine.executor
-        activity = executor.activity
-        if not isinstance(activity, Waits) or activity.waits_s(ctx) < self._leap_s + RENEW_S + self._period_s:
-            return "the step of the plan may act"
+        if self._waits_s(ctx) < self._leap_s + RENEW_S + self._period_s:
+            return "the step of the plan, or the cool-down, may act"
         if not self._slow(now, ctx.calm()):
             return "a temperature changes fast"
         return ""
+
+    def _waits_s(self, ctx: AnyContext) -> float:
+        """Return the rig time for which neither the step of the plan nor control acts, s."""
+        control: AnyControl = self.engine.control
+        if control.state.mode is _COOLDOWN:
+            return control.cools_s()
+        executor: Executor[AnyContext] = self.engine.executor
+        activity = executor.activity
+        return activity.waits_s(ctx) if isinstance(activity, Waits) else 0.0
 
     def _begin(self, now: float, temperatures_c: tuple[float, ...]) -> None:
         """Begin to count the readings, for the time of a leap."""
@@ -148,7 +164,16 @@ class Leaps:
         periods_s = [self._period_s, LOOP_S, *self.engine.devices.periods_s()]
         common_s = lcm(*[round(1e6 * period_s) for period_s in periods_s]) / 1e6  # a third of a second has none
         self._leap_s = common_s * max(1, int(USUAL_S / common_s))
-        self._each = {}
+        self._before, self._each = {}, {}
+        self.world.count_readings()
+
+    def _count(self, now: float) -> None:
+        """Take the readings that were counted, if they are as many as before; else count anew."""
+        readings = self.world.readings_since()
+        if readings == self._before:
+            self._each = readings
+            return
+        self._before, self._calm_s = readings, now
         self.world.count_readings()
 
     def _slow(self, now: float, temperatures_c: tuple[float, ...]) -> bool:

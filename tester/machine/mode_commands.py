@@ -106,6 +106,12 @@ class ModeCommands(Generic[StateT, ReadingsT, DemandT, InputsT]):
         """Command the cool-down; return why it is over, "" while it continues."""
         raise NotImplementedError
 
+    def cools_s(self) -> float:
+        """Return the rig time for which the cool-down surely continues, s: noise of readings allowed for; 0 if it may
+        end.
+        """
+        return 0.0
+
 
 def may_move(readings: BaseReadings) -> bool:
     """Return whether drives may be powered: safety chain and guard closed, every drive without a fault."""

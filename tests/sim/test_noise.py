@@ -102,3 +102,13 @@ def test_mean_of_the_fluctuation_over_a_window_is_as_computed() -> None:
 def test_mean_over_next_to_no_time_scatters_as_the_fluctuation_itself() -> None:
     assert mean_of_autoregressive(0.01, 0.3, 1e-4) == pytest.approx(0.01, rel=1e-3)
     assert mean_of_autoregressive(0.01, 0.3, 300.0) == pytest.approx(0.01 * math.sqrt(0.002), rel=1e-3)
+
+
+@pytest.mark.parametrize("count", [0, 1, 127, 128, 129, 128 + 1024, 3000])
+def test_a_stream_counts_what_was_drawn_and_skips(count: int) -> None:
+    drawn, skipped = NormalStream(1, "count"), NormalStream(1, "count")
+    for _ in range(count):
+        drawn.next()
+    skipped.skip(count)
+    assert drawn.drawn == skipped.drawn == count
+    assert drawn.next() == skipped.next()

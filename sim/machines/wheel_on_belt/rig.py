@@ -61,10 +61,10 @@ class WheelRig(SimRig):
 
     # Slots: CPython 3.11 keeps more than 30 attributes in a dictionary, and every step of the twin gets slower.
     __slots__ = (
-        "_belt", "_belt_creep", "_held_n", "_limit_nm", "_press", "_pressed_mm", "_pushed_n", "_roller_m", "_screw",
-        "_seen_s", "_sideslip", "_slip_nm", "_spring_mm_s", "_stalled", "_travelled_m", "_turned_rad", "_wheel",
-        "_yields", "belt_shaft", "belt_slip", "cell", "cells", "ir", "jacket", "mounted", "plant", "relay", "swapped",
-        "turned", "wheel_shaft",
+        "_belt", "_belt_creep", "_encoders_draw", "_encoders_drawn", "_held_n", "_limit_nm", "_press", "_pressed_mm",
+        "_pushed_n", "_roller_m", "_screw", "_seen_s", "_sideslip", "_slip_nm", "_spring_mm_s", "_stalled",
+        "_travelled_m", "_turned_rad", "_wheel", "_yields", "belt_shaft", "belt_slip", "cell", "cells", "ir", "jacket",
+        "mounted", "plant", "relay", "swapped", "turned", "wheel_shaft",
     )  # fmt: skip
 
     def __init__(
@@ -97,6 +97,9 @@ class WheelRig(SimRig):
         """Specimen, wheel and compound on the rig."""
         self.turned: set[str] = set()
         """Press or positioned axes that move the wrong way round: the motor's direction was never set."""
+        self._encoders_drawn: tuple[int, ...] = (0, 0)
+        self._encoders_draw: tuple[int, ...] = (0, 0)
+        """Numbers that the encoders' noise had taken when counting began, and takes in the time of a leap."""
         self._turned_rad = self._travelled_m = self._seen_s = 0.0
         """Travel of the wheel's shaft and of the belt's surface, and the time of both: what marks on them show."""
         self._wheel, self._belt, self._press = self.axes["wheel"], self.axes["belt"], self.axes["press"]
@@ -134,6 +137,33 @@ class WheelRig(SimRig):
 
     def take(self, setting: LawSetting) -> None:
         self.plant.setting = setting
+
+    # -- leaps ----------------------------------------------------------------------------------------------------
+
+    def count_readings(self) -> None:
+        super().count_readings()
+        self._encoders_drawn = self._drawn()
+
+    def readings_since(self) -> dict[str, dict[int, int]]:
+        self._encoders_draw = tuple(now - then for now, then in zip(self._drawn(), self._encoders_drawn, strict=True))
+        return super().readings_since()
+
+    def _drawn(self) -> tuple[int, ...]:
+        """Return how many numbers each encoder's noise has taken."""
+        return self.plant.wheel_speed.noise.drawn, self.plant.belt_speed.noise.drawn
+
+    def leap(self, seconds: float, each: Mapping[str, Mapping[int, int]]) -> None:
+        """Let time pass in which what turns keeps its speed; only its encoder stands still, by the clock of the wires.
+        """
+        plant, before = self.plant, self._drawn()
+        super().leap(seconds, each)
+        left = [due + then - now for due, then, now in zip(self._encoders_draw, before, self._drawn(), strict=True)]
+        plant.wheel_speed.noise.skip(left[0])
+        plant.belt_speed.noise.skip(left[1])
+
+    def put_back(self, seconds: float) -> None:
+        super().put_back(seconds)
+        self._seen_s -= seconds
 
     # -- mechanics ------------------------------------------------------------------------------------------------
 

@@ -12,7 +12,7 @@ from tester.kinds.wheel_on_belt.budget import TOUCHES_U_MM
 from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
-from tester.kinds.wheel_on_belt.interlocks.contact_force import depth_mm
+from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, depth_mm
 from tester.kinds.wheel_on_belt.procedures.gates import GATES, Gates
 from tester.kinds.wheel_on_belt.procedures.wear_estimate import PRIOR_RATE, LoadMemory, loss_per_n_m
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife, wheel_of
@@ -29,6 +29,10 @@ LEARNT_SHARE: Final = 0.2
 """A wear rate is learnt once its standard uncertainty is at most this share of it [A]."""
 RATE_DIFFERS: Final = 0.1
 """Share by which the rates of two wheels of one compound differ [A]."""
+CALM_M_S: Final = 0.02
+"""Wheel and belt turn at their constant speed within this [A]: in a cool-down the creep swells by half of it."""
+CALM_MM_S: Final = 0.1
+"""A press that is commanded no faster is back [A]."""
 _LOAD: Final = Press.LOAD
 
 
@@ -227,6 +231,17 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
             self.rig.wear.growth_uncertainty_mm_per_k, self._place_mm, force_n, wheel.sliding_m, wheel.exposure_n_m,
             wheel.width_mm, 100.0 * estimate.u_rate / rate if rate > 0.0 else 100.0, 1, wheel.cold_mm,
         )  # fmt: skip
+
+    def calm(self) -> tuple[float, ...]:
+        r, out = self.readings, self.view.setpoints
+        if out.heat or out.contactor or r.contactor_closed or not r.heat_percent <= 0.0:
+            return ()
+        if self.contact.in_contact or not r.force_z_n < UNLOADED_N or not abs(out.press_mm_s) <= CALM_MM_S:
+            return ()
+        wheel_m_s = out.wheel_rad_s * r.diameter_mm * 0.5e-3
+        if not (abs(r.wheel_speed_m_s - wheel_m_s) <= CALM_M_S and abs(r.belt_speed_m_s - out.belt_m_s) <= CALM_M_S):
+            return ()
+        return (r.surface_c, r.hub_c) if r.surface_valid and r.jacket_valid else ()
 
     def touching(self) -> bool:
         """Return whether contact is wanted, or measured."""

@@ -175,6 +175,7 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         out.press_mm_s = 0.0
         out.creeps = True
         since_s = r.now_s - self.state.mode_since_s
+        self.state.cooling.follow(r.hub_c)
         if r.jacket_valid and r.hub_c <= p[COOLDOWN_HUB_C]:
             return "cooled down"
         if since_s > p[COOLDOWN_AT_MOST_S]:
@@ -183,3 +184,9 @@ class WheelStops(Control[WheelState, Readings, Demand, InterlockInputs]):
         creep_m_s = slower * p[COOLDOWN_SPEED_M_S]
         out.wheel_rad_s = creep_m_s / (r.diameter_mm * 0.5e-3) if r.diameter_mm > 1.0 else 0.0
         return ""
+
+    def cools_s(self) -> float:
+        r, p, cooling = self.view.readings, self.view.parameters, self.state.cooling
+        if not (r.jacket_valid and cooling.far(cooling.last_c - p[COOLDOWN_HUB_C])):
+            return 0.0
+        return p[COOLDOWN_AT_MOST_S] - (r.now_s - self.state.mode_since_s)

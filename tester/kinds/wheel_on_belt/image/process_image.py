@@ -102,13 +102,30 @@ class Readings(BaseReadings):
     diameter_mm: float = NAN
     """Running diameter of the wheel: the cold diameter plus its growth by heat (``procedures.wheel_life``)."""
 
+    leapt_s: float = 0.0
+    """By how much the stamps have been moved from the wires' clock, s."""
+
+    def later(self, seconds: float) -> None:
+        BaseReadings.later(self, seconds)
+        self.leapt_s = seconds
+        self.wheel_at_s += seconds
+        self.wheel_changed_s += seconds
+        self.belt_at_s += seconds
+        self.press_at_s += seconds
+        self.positions_at_s += seconds
+        self.cell_at_s += seconds
+        self.cell_changed_s += seconds
+        self.surface_at_s += seconds
+        self.surface_changed_s += seconds
+        self.jacket_at_s += seconds
 
     def drive_stamps_s(self) -> tuple[float, ...]:
         return (self.wheel_at_s, self.belt_at_s, self.press_at_s, self.positions_at_s)
+
     def faults(self) -> list[str]:
         """Return the faults of drives, wires and devices, in words; the cell's transmitter first."""
         faults = BaseReadings.faults(self)
-        blamed = "" if self.joined is None else self.joined.blame(self.now_s, self.cell_old_s)
+        blamed = "" if self.joined is None else self.joined.blame(self.now_s - self.leapt_s, self.cell_old_s)
         return [blamed, *faults] if blamed else faults
 
     @property

@@ -22,8 +22,10 @@ FADES_S: Final = 900.0
 """Time constant with which ``lack_j`` forgets, s [A]: a heating up takes about ten minutes."""
 LEAST_LACK_J: Final = 2e3
 """Least allowance that ``lack_j`` is compared with, J: a sensor late by 5 s hides 1 kJ at 200 W."""
-LONGEST_S: Final = 5.0
-"""Longest time between two updates, s: after a longer gap the comparison begins anew."""
+LONGEST_S: Final = 12.0
+"""Longest time between two updates, s: after a longer gap the comparison begins anew. A simulated rig's leaps with the
+heat off are shorter (``tester.machine.leaps``).
+"""
 
 
 @dataclass(slots=True)

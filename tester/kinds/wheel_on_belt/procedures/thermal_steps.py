@@ -13,6 +13,7 @@ from tester.kinds.wheel_on_belt.run.past_runs import KIND, LEAST_J, LEAST_RISE_K
 from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence
 from tester.machine.soak import SHOW_S, SoakWait
+from tester.machine.trend import Trend
 
 NEAR_AMBIENT_K: Final = 3.0
 """A setpoint within this of ambient is reached slowly, by heating or cooling: the soak only reaches the band [A]."""
@@ -137,6 +138,7 @@ class RestStep:
         self.shown_s = float("-inf")
         self.late: Activity[Context] | None = None
         self.ask_when_late = ask_when_late
+        self.trend = Trend()
 
     def resume(self, ctx: Context) -> None:
         """Resume standing, or stopping."""
@@ -152,6 +154,7 @@ class RestStep:
             self.began_s = ctx.now
         waited = ctx.now - self.began_s
         surface, until = ctx.readings.surface_c, self.rest.until_c
+        self.trend.follow(surface)
         if ctx.now >= self.shown_s:
             self.shown_s = ctx.now + SHOW_S
             minutes = f"{waited / 60:.0f} of {self.rest.at_least_s / 60:.0f} min"
@@ -159,6 +162,7 @@ class RestStep:
         # Resting only cools: a surface colder than `until`, in a cold laboratory, is no reason to wait.
         cool = until is None or surface <= until + self.rest.within_k
         if waited >= self.rest.at_least_s and cool:
+            ctx.wheel.size_up(ctx.readings, ctx.rig.wear)
             return True
         if waited < self.rest.at_most_s:
             return False
@@ -167,6 +171,16 @@ class RestStep:
             ctx.journal.event(ctx.now, "rest", f"not reached: {text}", "warning")
             self.late = Ask(f"{text}: go on?", near=False) if self.ask_when_late else Sequence()
         return self.late.step(ctx)
+
+    def waits_s(self, ctx: Context) -> float:
+        """Return the rig time for which the rest surely continues, s: its least time, then while the surface is far
+        from cool.
+        """
+        waited, until = ctx.now - self.began_s, self.rest.until_c
+        if not waited >= self.rest.at_least_s:
+            return self.rest.at_least_s - waited if isfinite(waited) else 0.0
+        warm = until is not None and self.trend.far(self.trend.last_c - until - self.rest.within_k)
+        return self.rest.at_most_s - waited if warm and self.late is None else 0.0
 
 
 class CoolDown:
@@ -179,6 +193,7 @@ class CoolDown:
         self.turning = False
         self.began_s = float("nan")
         self.shown_s = float("-inf")
+        self.trend = Trend()
 
     def resume(self, ctx: Context) -> None:
         """Resume turning, or starting to turn."""
@@ -195,4 +210,13 @@ class CoolDown:
         if ctx.now >= self.shown_s:
             self.shown_s = ctx.now + SHOW_S
             ctx.progress.phase = f"cool to {self.below_c:.0f} degC, hub {ctx.readings.hub_c:.1f} degC"
-        return ctx.readings.hub_c < self.below_c or ctx.now - self.began_s > COOL_AT_MOST_S
+        self.trend.follow(ctx.readings.hub_c)
+        over = ctx.readings.hub_c < self.below_c or ctx.now - self.began_s > COOL_AT_MOST_S
+        if over:
+            ctx.wheel.size_up(ctx.readings, ctx.rig.wear)
+        return over
+
+    def waits_s(self, ctx: Context) -> float:
+        """Return the rig time for which the hub surely stays too hot, s."""
+        hot = self.turning and self.trend.far(self.trend.last_c - self.below_c)
+        return COOL_AT_MOST_S - (ctx.now - self.began_s) if hot else 0.0

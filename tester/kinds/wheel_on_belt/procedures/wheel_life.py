@@ -142,10 +142,21 @@ class WheelLife:
         if r.surface_valid and r.jacket_valid:
             mean_c = rubber_c(r.hub_c, r.surface_c)
             if not -SAME_SIZE_K < mean_c - self.rubber_c < SAME_SIZE_K and -_INF < mean_c < _INF:
-                self.rubber_c = mean_c
-                self.grown_mm = wear.growth_mm(mean_c)
+                self._grow(mean_c, wear)
         r.cold_mm = cold_mm = self.installed_mm - self.loss_mm
         r.diameter_mm = cold_mm + self.grown_mm
+
+    def size_up(self, r: Readings, wear: WearConfig) -> None:
+        """Let the diameters follow even a small change of temperature, after a rest: how it came about has no part in
+        them.
+        """
+        mean_c = rubber_c(r.hub_c, r.surface_c)
+        if r.surface_valid and r.jacket_valid and -_INF < mean_c < _INF:
+            self._grow(mean_c, wear)
+
+    def _grow(self, mean_c: float, wear: WearConfig) -> None:
+        self.rubber_c = mean_c
+        self.grown_mm = wear.growth_mm(mean_c)
 
 
 def wheel_of(

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from sim.physics.slip import slip_velocity
 from tester.analysis.terms import Size
@@ -36,6 +36,9 @@ from tester.kinds.wheel_on_belt.recipe.wheel_change import TOUCH
 
 if TYPE_CHECKING:
     from tester.kinds.wheel_on_belt.rig import RigConfig
+
+LEAPT: Final = 0.85
+"""Share of the time of rests and cool-downs that is leapt; from simulated runs [A]."""
 
 
 def predicted_loss_mm(step: WheelCondition, rig: RigConfig) -> float:
@@ -244,6 +247,12 @@ class WheelEstimator(Estimator):
             )
             for step in last.values()
         )
+
+    def leapt_s(self, plan: Plan, steps: Sequence[StepEstimate]) -> float:
+        """Return the seconds leapt while the wheel rests and cools."""
+        pairs = zip(plan.steps, steps, strict=True)
+        waits_s = math.fsum(estimate.seconds for step, estimate in pairs if isinstance(step, Rest | Cool))
+        return LEAPT * (waits_s + self.shut_down_s(plan))
 
     def condition(self, step: WheelCondition) -> StepEstimate:
         """Return a condition's estimate, without the heating before it."""

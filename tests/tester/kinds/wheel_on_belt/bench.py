@@ -21,6 +21,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.machine.activity import Activity
+from tester.machine.leaps import Leaps
 from tester.machine.prompts import Prompts
 from tester.machine.run import Run
 from tester.machine.run_parts import NoAttendant, RunSetup
@@ -269,6 +270,12 @@ class Simulation:
         self.truth: list[tuple[float, float]] = []
         """(time, surface temperature of the plant), tick by tick."""
         self.scans: list[Scan] = []
+        self.leaps: Leaps | None = None
+
+    def leaping(self) -> Simulation:
+        """Leap time in which only heat flows, from now on."""
+        self.leaps = Leaps(self.run.engine, self.world)
+        return self
 
     def tick(self) -> None:
         """Do one tick, as the ticker of simulated time does."""
@@ -276,7 +283,8 @@ class Simulation:
         self.world.advance(now)
         self.ticks.append(now)
         self.truth.append((now, self.world.plant.surface_c))
-        self.now = next_tick(now, self.run.tick(now), self.world.urgent_s)
+        later = next_tick(now, self.run.tick(now), self.world.urgent_s)
+        self.now = later if self.leaps is None else self.leaps.after(now, later)
         engine = self.run.engine
         if engine.last_scan_s == now:
             r = self.ctx.readings

@@ -199,6 +199,36 @@ def test_cooling_is_given_up_after_hours(bench: Bench) -> None:
     assert bench.run(CoolDown(Cool(1, 45.0), 0.1), at_most_s=4 * 3600.0, dt=2.0) > 3 * 3600.0
 
 
+def test_a_rest_surely_waits_for_its_least_time_then_while_the_surface_is_warm(bench: Bench) -> None:
+    bench.surface_c = 30.0
+    step = RestStep(rest(at_least_s=60.0, at_most_s=300.0), ask_when_late=False)
+    assert step.waits_s(bench.ctx) == 0.0
+    bench.hold(step, 20.0, dt=0.1)
+    assert step.waits_s(bench.ctx) == pytest.approx(40.0, abs=2.0)
+    bench.hold(step, 60.0, dt=0.1)
+    assert step.waits_s(bench.ctx) == pytest.approx(220.0, abs=2.0)
+
+
+def test_a_rest_near_its_end_may_act_at_any_time(bench: Bench) -> None:
+    bench.surface_c = 30.0
+    step = RestStep(rest(), ask_when_late=False)
+    bench.hold(step, 100.0, dt=0.1)
+    bench.surface_c = 27.2
+    assert not bench.scan(step)
+    assert step.waits_s(bench.ctx) == 0.0
+
+
+def test_cooling_surely_continues_while_the_hub_is_far_from_cool(bench: Bench) -> None:
+    bench.surface_c = 60.0
+    step = CoolDown(Cool(1, 45.0), 0.1)
+    assert step.waits_s(bench.ctx) == 0.0
+    bench.hold(step, 30.0, dt=0.1)
+    assert step.waits_s(bench.ctx) > 3600.0
+    bench.surface_c = 46.0
+    bench.scan(step)
+    assert step.waits_s(bench.ctx) == 0.0
+
+
 def heated() -> Simulation:
     """Return a run that has just heated up to 40 degC."""
     run = Simulation(SHORT.replace("25 degC", "40 degC"), seed=5)
