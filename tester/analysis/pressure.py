@@ -1,4 +1,4 @@
-"""The nominal pressure of a load, where a run's recipe states the area under the rubber."""
+"""The nominal pressure of a load, where recipe or rig file state the area under the rubber."""
 
 from __future__ import annotations
 
@@ -11,6 +11,11 @@ AREA_MM2: Final = "contact_area_mm2"
 """Key of the nominal area in a run's metadata."""
 AREA_SOURCE: Final = "contact_area_source"
 """Key of where it comes from."""
+
+
+def area_metadata(area_mm2: float, source: str) -> dict[str, str]:
+    """Return an area, mm2, and its source ("" for none) as a run's metadata."""
+    return {AREA_MM2: f"{area_mm2:g}", **({AREA_SOURCE: source} if source else {})}
 
 
 def pressure_kpa(load_n: float, metadata: Mapping[str, str]) -> float | None:

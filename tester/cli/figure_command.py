@@ -137,18 +137,7 @@ def figures_of(folder: Path, results: RunResults, law: str, published: bool) -> 
     found += [stiffness] if stiffness is not None else []
     kind = kind_of(results.run.info)
     found += master_charts(kind, folder) if kind is not None else []
-    return [_with_pressure(one, results.run.info.metadata) for one in found]
-
-
-def _with_pressure(figure: Figure, metadata: Mapping[str, str]) -> Figure:
-    """Return a figure whose note converts loads to pressures, where the recipe states the area."""
-    from tester.analysis.pressure import pressure_kpa
-
-    per_n = pressure_kpa(1.0, metadata)
-    if per_n is None:
-        return figure
-    note = f"{figure.note}; " if figure.note else ""
-    return replace(figure, note=f"{note}1 N is {per_n:g} kPa")
+    return found
 
 
 def deformation_chart(folder: Path, results: RunResults) -> Chart | None:

@@ -46,6 +46,14 @@ def series_of(label: str, marks: Iterable[Mark], look: Look, style: int) -> Seri
     )  # fmt: skip
 
 
+class SecondScale(NamedTuple):
+    """A scale on the other side of a pair of axes, for the same places in another unit."""
+
+    label: str
+    factor: float
+    """Its number for 1 of the axis, above 0."""
+
+
 @dataclass(frozen=True, slots=True)
 class ChartPanel:
     """One pair of axes."""
@@ -60,6 +68,8 @@ class ChartPanel:
     """Whether a line joins measured points that no law goes through."""
     log_y: bool = False
     """Whether its vertical axis is logarithmic."""
+    y_second: SecondScale | None = None
+    """A further scale on its right."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,6 +90,8 @@ class Chart:
     """Whether the horizontal axis is logarithmic."""
     stacked: bool = False
     """Whether panels are stacked, with a common horizontal axis and a vertical axis each."""
+    x_second: SecondScale | None = None
+    """A further scale at the top of each panel."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,6 +106,10 @@ class ChartSurface:
     z_label: str
     panels: tuple[tuple[str, tuple[float, ...], tuple[float, ...], tuple[tuple[float, ...], ...]], ...]
     note: str = ""
+    x_second: SecondScale | None = None
+    """A further scale at the top of each panel."""
+    y_second: SecondScale | None = None
+    """A further scale on the right of each panel."""
 
 
 Figure = Chart | ChartSurface

@@ -8,12 +8,13 @@ from dataclasses import dataclass
 from itertools import permutations
 from math import isfinite
 
+from tester.analysis.pressure import pressure_kpa
 from tester.analysis.reference import ControlChart, ControlPoint
 from tester.analysis.results import RepeatResult
 from tester.base.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Look, Mark, Series, series_of
-from tester.report.layout import labelled, name_of
+from tester.report.layout import labelled, name_of, second_scale
 from tester.results.columns import unit_of
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
@@ -42,6 +43,8 @@ class ChartValue:
     u: float = NAN
     run: str = ""
     """Name of its run, where several are shown together."""
+    kpa_per_n: float | None = None
+    """Nominal pressure of 1 N, where the area under the load is known."""
 
     @property
     def named(self) -> str:
@@ -65,8 +68,9 @@ class Material:
 
 def values_of(results: RunResults, run: str = "") -> list[ChartValue]:
     """Return the rows of a run that have a value; ``run``: its name among others."""
+    kpa_per_n = pressure_kpa(1.0, results.run.info.metadata)
     return [
-        ChartValue(row.info.setpoint, row.result.mu, row.result.budget.expanded, run)
+        ChartValue(row.info.setpoint, row.result.mu, row.result.budget.expanded, run, kpa_per_n)
         for row in results.rows
         if row.result.ok
     ]
@@ -108,7 +112,10 @@ def overlay_charts(values: Sequence[ChartValue]) -> Iterator[Chart]:
         if panels:
             title = f"{Y_LABEL} over {name_of(along)}, of each run"
             log_x = _logarithmic(values, along)
-            yield Chart(f"{along.name}-of-runs", title, labelled(along), Y_LABEL, tuple(panels), BARS, log_x=log_x)
+            yield Chart(
+                f"{along.name}-of-runs", title, labelled(along), Y_LABEL, tuple(panels), BARS, log_x=log_x,
+                x_second=second_scale(along, _kpa_per_n(values)),
+            )  # fmt: skip
 
 
 def _overlaid(alike: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> ChartPanel | None:
@@ -120,6 +127,12 @@ def _overlaid(alike: Sequence[ChartValue], along: Axis, runs: Sequence[str]) -> 
             series.append(_points(run, points, along, "measured", style))
     named = [axis for axis in alike[0].held.axes if axis.name != along.name and not axis.at_default(alike[0].held)]
     return ChartPanel(condition_words(alike[0].held, named), tuple(series)) if len(series) > 1 else None
+
+
+def _kpa_per_n(values: Sequence[ChartValue]) -> float | None:
+    """Return the pressure of 1 N, where all values have the same."""
+    found = {value.kpa_per_n for value in values}
+    return found.pop() if len(found) == 1 else None
 
 
 def _varied(values: Sequence[ChartValue]) -> list[Axis]:
@@ -143,7 +156,11 @@ def _chart(material: Material, along: Axis, across: Axis | None) -> Chart | None
     by = f"-by-{across.name}" if across is not None else ""
     title = f"{Y_LABEL} over {name_of(along)}" + (f" at each {name_of(across)}" if across is not None else "")
     log_x = _logarithmic(material.measured, along)
-    return Chart(f"{along.name}{by}", title, labelled(along), Y_LABEL, tuple(panels), "; ".join(notes), log_x=log_x)
+    second = second_scale(along, _kpa_per_n(material.measured))
+    return Chart(
+        f"{along.name}{by}", title, labelled(along), Y_LABEL, tuple(panels), "; ".join(notes), log_x=log_x,
+        x_second=second,
+    )  # fmt: skip
 
 
 def _caveats(material: Material) -> list[str]:
@@ -192,7 +209,7 @@ def _panel(material: Material, values: Sequence[ChartValue], along: Axis, across
         here = [point for point in values if across is None or across.number(point.held) == level]
         if len({along.number(point.held) for point in here}) < 2:
             continue  # a single place shows no trend
-        label = f"{plain(level)} {unit_of(across)}" if across is not None else "measured"
+        label = _level(level, across, values) if across is not None else "measured"
         series.append(_points(label, here, along, "measured", style))
         shown = [value for value in published if across is None or across.number(value.held) == level]
         if shown:
@@ -203,6 +220,12 @@ def _panel(material: Material, values: Sequence[ChartValue], along: Axis, across
         return None
     named = [axis for axis in values[0].held.axes if axis.name not in free and not axis.at_default(values[0].held)]
     return ChartPanel(condition_words(values[0].held, named), tuple(series))
+
+
+def _level(level: float, across: Axis, values: Sequence[ChartValue]) -> str:
+    """Return a value of an axis with its unit; a load with its pressure, where that is known."""
+    second = second_scale(across, _kpa_per_n(values))
+    return f"{plain(level)} {unit_of(across)}" + (f" ({second.factor * level:g} kPa)" if second is not None else "")
 
 
 def _usual(values: Sequence[ChartValue], free: set[str]) -> dict[str, AxisValue]:
@@ -256,7 +279,10 @@ def _surfaces(values: Sequence[ChartValue], along: Axis, upward: Axis) -> Iterat
     if panels:
         title = f"{Y_LABEL} over {name_of(along)} and {name_of(upward)}"
         note = "empty: not measured"
-        yield ChartSurface("surface", title, labelled(along), labelled(upward), Y_LABEL, tuple(panels), note)
+        x_second, y_second = (second_scale(axis, _kpa_per_n(values)) for axis in (along, upward))
+        yield ChartSurface(
+            "surface", title, labelled(along), labelled(upward), Y_LABEL, tuple(panels), note, x_second, y_second
+        )
 
 
 def repeats_chart(measured: Measured) -> Chart:

@@ -7,16 +7,18 @@ colours differ in lightness. Drawing uses no screen, no clock and nothing random
 from __future__ import annotations
 
 import warnings
+from functools import partial
 from io import BytesIO
 from itertools import pairwise
 from math import ceil
+from operator import mul
 from pathlib import Path
 from textwrap import fill
 from typing import TYPE_CHECKING, Any, BinaryIO, Final
 
 from tester.base.plugins import MissingExtraError, needs
 from tester.base.words import harmless
-from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
+from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, SecondScale, Series
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -131,8 +133,25 @@ def _draw_chart(chart: Chart, places: Sequence[Any]) -> None:
             place.yaxis.set_major_formatter("{x:g}")
             place.yaxis.set_minor_formatter("")
         place.set_ylabel(panel.y_label or chart.y_label)
+        _second_scales(place, chart.x_second, panel.y_second)
     if chart.from_zero:  # last: an axis with a fixed limit ignores further points, also of panels that share it
         places[0].set_ylim(bottom=0.0)
+
+
+def _second_scales(
+    place: Any, x: SecondScale | None, y: SecondScale | None, at: tuple[Sequence[float], ...] = ((), ())
+) -> None:
+    """Draw the further scales of a pair of axes, whose own scales are set; ``at``: marks of x and y, () for any."""
+    sides = ((x, "top", place.secondary_xaxis, at[0]), (y, "right", place.secondary_yaxis, at[1]))
+    for second, side, add, marks in sides:
+        if second is None:
+            continue
+        drawn = add(side, functions=(partial(mul, second.factor), partial(mul, 1.0 / second.factor)))
+        along = drawn.xaxis if side == "top" else drawn.yaxis
+        along.set_label_text(second.label)
+        if marks:
+            along.set_ticks([second.factor * mark for mark in marks])
+        along.set_major_formatter("{x:g}")
 
 
 def _narrow(panel: ChartPanel) -> bool:
@@ -206,6 +225,7 @@ def _draw_surface(surface: ChartSurface, canvas: Any, places: Sequence[Any]) -> 
         place.set_title(title, fontsize=8.0)
         place.set_xlabel(surface.x_label)
         place.set_ylabel(surface.y_label)
+        _second_scales(place, surface.x_second, surface.y_second, (x, y))
     if drawn is not None:
         canvas.colorbar(drawn, ax=[*places[: len(surface.panels)]], label=surface.z_label)
 

@@ -10,8 +10,10 @@ from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
+from tester.analysis.pressure import LOAD
 from tester.base.axes import Axis
 from tester.base.words import NONE
+from tester.report.chart import SecondScale
 from tester.results.columns import R, Table, unit_of
 
 Tone = Literal["", "good", "care", "bad", "small"]
@@ -161,6 +163,11 @@ def file_name(source: str) -> str:
 def name_of(axis: Axis) -> str:
     """Return the name of an axis."""
     return axis.name.replace("_", " ")
+
+
+def second_scale(axis: Axis, kpa_per_n: float | None) -> SecondScale | None:
+    """Return the scale of the nominal pressure beside an axis of loads; None for any other, and without an area."""
+    return SecondScale("pressure (kPa)", kpa_per_n) if kpa_per_n is not None and axis.name == LOAD else None
 
 
 def labelled(axis: Axis) -> str:

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from math import isfinite
 
+from tester.analysis.pressure import pressure_kpa
 from tester.base.axes import condition_words
 from tester.base.words import coefficient
 from tester.report.chart import Chart, ChartPanel, Look, Mark, Series, series_of
-from tester.report.layout import labelled
+from tester.report.layout import labelled, second_scale
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
 from tester.store.records import StoredRepeat
@@ -40,13 +41,15 @@ def overview_chart(runs: Sequence[tuple[str, RunResults]]) -> Chart | None:
     several = len(runs) > 1
     axes = placed[0].measured.info.setpoint.axes
     varied = axes.differing(condition.measured.info.setpoint for condition in placed)
+    areas = {pressure_kpa(1.0, results.run.info.metadata) for _, results in runs}
+    kpa_per_n = areas.pop() if len(areas) == 1 else None
     strips = [ChartPanel("", tuple(_coefficients(placed, several)), "coefficient")]
     for axis in (each for each in varied if each.plotted and not each.textual):
         marks = [
             Mark(c.at, axis.number(c.measured.info.setpoint), width=c.half, name=_words(c, several)) for c in placed
         ]
         series = series_of("", marks, "measured", 0)
-        strips.append(ChartPanel("", (series,), labelled(axis)))
+        strips.append(ChartPanel("", (series,), labelled(axis), y_second=second_scale(axis, kpa_per_n)))
     title = f"{'runs, one after the other' if several else 'the run'}: {len(placed)} conditions in order of time"
     note = "bars: U (95 %) of what was mounted; along: from begin to end of a condition"
     name = "overview-of-runs" if several else "overview"

@@ -7,12 +7,13 @@ name, in the CSV file and in JSON.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from enum import StrEnum
 from math import isfinite
 from typing import Generic, TypeAlias, TypeVar
 
+from tester.analysis.pressure import AREA_MM2, LOAD, pressure_kpa
 from tester.base.axes import Axes, Axis
 from tester.base.quantities import Channel, Means
 from tester.base.words import NONE, Json, decimal, significant
@@ -60,6 +61,8 @@ class Column(Generic[R]):
     """Whether CSV and JSON have it; a shorter form of other columns is for people only."""
     narrow: str = ""
     """Heading with unit for narrow places; "" the same as elsewhere."""
+    beside: str = ""
+    """Key of the column that it follows where that one comes first."""
 
     @property
     def head(self) -> str:
@@ -119,16 +122,31 @@ def axis_column(axis: Axis, info: Callable[[R], ConditionInfo]) -> Column[R]:
 
 
 def setting_columns(
-    axes: Axes, info: Callable[[R], ConditionInfo], replicate: Callable[[R], Value]
+    axes: Axes,
+    info: Callable[[R], ConditionInfo],
+    replicate: Callable[[R], Value],
+    metadata: Mapping[str, str],
+    views: frozenset[Output],
 ) -> tuple[Column[R], ...]:
-    """Return the columns that identify a row's condition."""
+    """Return the columns that identify a row's condition, and the pressure of its load where the area is known.
+
+    ``metadata``: of the run; ``views``: outputs that show the pressure.
+    """
+    found: list[Column[R]] = []
+    for axis in axes:
+        found.append(axis_column(axis, info))
+        if axis.name == LOAD and AREA_MM2 in metadata:
+            found.append(Column(
+                "pressure_kpa", "pressure", lambda row: pressure_kpa(info(row).setpoint.number(LOAD), metadata), "kPa",
+                1, views, beside=axis.column,
+            ))  # fmt: skip
     return (
         Column("specimen", "specimen", lambda row: info(row).specimen),
         Column("replicate", "replicate", replicate),
         Column("grid", "grid", lambda row: info(row).grid),
         Column("compound", "compound", lambda row: info(row).compound),
         Column("note", "note", lambda row: info(row).note),
-        *(axis_column(axis, info) for axis in axes),
+        *found,
     )
 
 
@@ -173,8 +191,11 @@ class Table(Generic[R]):
 
     def view(self, output: Output, first: Iterable[str] = ()) -> Table[R]:
         """Return the table with the columns of an output, after those of the keys ``first``; raises KeyError."""
-        leading = tuple(self[key] for key in first)
-        return replace(self, columns=leading + tuple(column for column in self.columns if output in column.views))
+        shown = [column for column in self.columns if output in column.views]
+        leading: list[Column[R]] = []
+        for key in first:
+            leading += [self[key], *(column for column in shown if column.beside == key)]
+        return replace(self, columns=(*leading, *(column for column in shown if column not in leading)))
 
     def csv(self) -> Iterator[tuple[Cell, ...]]:
         """Yield keys, then the cells of each row."""

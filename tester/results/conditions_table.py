@@ -14,7 +14,6 @@ from typing import Final
 
 from tester.analysis.flags import flags_in
 from tester.analysis.left_out import Counts
-from tester.analysis.pressure import AREA_MM2, LOAD, pressure_kpa
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN, SoakCheck, mark_of
 from tester.analysis.wear_rate import ConditionWear
@@ -89,8 +88,10 @@ def columns_of(results: RunResults) -> tuple[Column[ConditionRow], ...]:
     further = {channel.name for channel in results.quantities.further}
     return (
         *_WHICH,
-        *setting_columns(results.axes, lambda row: row.info, lambda row: row.measured and row.info.replicate),
-        *_pressure(results),
+        *setting_columns(
+            results.axes, lambda row: row.info, lambda row: row.measured and row.info.replicate,
+            results.run.info.metadata, _PEOPLE,
+        ),
         *_fixed(results.worn),
         *(
             mean_column(channel, lambda row: row.result.measured, _FURTHER if channel.name in further else frozenset())
@@ -98,17 +99,6 @@ def columns_of(results: RunResults) -> tuple[Column[ConditionRow], ...]:
         ),
         _REMARKS,
     )
-
-
-def _pressure(results: RunResults) -> tuple[Column[ConditionRow], ...]:
-    """Return the column of the nominal pressure, where the recipe states an area and loads are held."""
-    metadata = results.run.info.metadata
-    if AREA_MM2 not in metadata or LOAD not in results.axes.places:
-        return ()
-    return (
-        Column("pressure_kpa", "pressure", lambda row: pressure_kpa(row.info.setpoint.number(LOAD), metadata), "kPa", 1,
-               _PEOPLE - {Output.END}),
-    )  # fmt: skip
 
 
 def sweep_columns() -> tuple[Column[ConditionRow], ...]:

@@ -54,7 +54,10 @@ def repeats_table(results: RunResults) -> Table[CommittedRepeat]:
     ways = (_DIRECTION,) if results.both_directions else ()
     columns: tuple[Column[CommittedRepeat], ...] = (
         *which,
-        *setting_columns(results.axes, lambda row: row.measured.info, lambda row: row.measured.info.replicate),
+        *setting_columns(
+            results.axes, lambda row: row.measured.info, lambda row: row.measured.info.replicate,
+            results.run.info.metadata, frozenset(),
+        ),
         *_FOUND,
         *(mean_column(quantity, lambda row: row.result.means) for quantity in results.quantities.averaged),
         *ways,

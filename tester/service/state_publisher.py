@@ -25,7 +25,7 @@ from tester.service.preflight import Past, known_checks
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.service_link import Order
 from tester.service.state_view import ManualView, ProgressView, RunView, StateView, TickView
-from tester.service.values import PlanTrack, trend_row, unknown_values
+from tester.service.values import PlanTrack, trend_row, unknown_values, with_pressure
 from tester.service.watch import RunWatch, risk_of
 from tester.store.record_schema import StoreError
 
@@ -96,7 +96,7 @@ class Desk:
         self.alarms = AlarmList(clock.utc_now, self.tell)
         self.kind = served_kind(self.rig)
         self.gateway.machine(self.kind.machine)
-        self._unknown = unknown_values(quantities_on(self.rig), self.rig)
+        self._unknown = with_pressure(unknown_values(quantities_on(self.rig), self.rig), self.rig.area_metadata)
         self._alone = self.kind.alone(self.rig)
         self._disk = DiskWatch(self.runs, self.alarms, self.notify)
         self._risk = risk_of(self.rig)

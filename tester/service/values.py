@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import hypot, inf, isfinite
 
+from tester.analysis.pressure import LOAD, pressure_kpa
 from tester.base.axes import ListWords
 from tester.base.quantities import LAST, Channel, Quantities, Screen
 from tester.base.screen import Quality, Value
@@ -63,6 +64,25 @@ def unknown_values(quantities: Quantities, rig: Rig) -> tuple[Value, ...]:
     return tuple(unknown_value(channel, rig) for channel in quantities.shown)
 
 
+def with_pressure(values: tuple[Value, ...], metadata: Mapping[str, str]) -> tuple[Value, ...]:
+    """Return values with the nominal pressure behind the load, where the metadata of run or rig has an area."""
+    kpa_per_n = pressure_kpa(1.0, metadata)
+    at = next((place for place, value in enumerate(values) if value.key == LOAD), None)
+    if kpa_per_n is None or at is None:
+        return values
+
+    def times(number: float | None) -> float | None:
+        return None if number is None else kpa_per_n * number
+
+    load = values[at]
+    pressure = replace(
+        load, key="pressure", label="Pressure", unit="kPa", value=times(load.value), setpoint=times(load.setpoint),
+        low=times(load.low), high=times(load.high), band_low=times(load.band_low), band_high=times(load.band_high),
+        scale_low=kpa_per_n * load.scale_low, scale_high=kpa_per_n * load.scale_high,
+    )  # fmt: skip
+    return (*values[: at + 1], pressure, *values[at + 1 :])
+
+
 def known(value: float | None) -> float | None:
     """Return a value if it is a finite number, else None."""
     return value if value is not None and isfinite(value) else None
@@ -88,7 +108,7 @@ class ValueView:
         wanted, now = self.panel.wanted(), self.engine.wires_s
         quality = {device: self._quality(news, now) for device, news in self.panel.news().items()}
         nothing: tuple[float | None, Quality] = (None, "none")
-        return tuple(
+        found = tuple(
             measured(
                 unknown,
                 channel.scaled(self._read(channel.name)) if channel.source else friction(self._quantities, self._read),
@@ -97,6 +117,7 @@ class ValueView:
             )
             for unknown, channel in zip(self.unknown, self._quantities.shown, strict=True)
         )
+        return with_pressure(found, {**self.engine.ctx.rig.area_metadata, **self.engine.executor.plan.metadata})
 
     def _read(self, name: str) -> float:
         """Return a channel as it would be recorded now."""

@@ -26,7 +26,15 @@ from tester.service.state_view import (
     StateView,
     TickView,
 )
-from tester.service.values import NOTHING_WANTED, friction, measured, screen_of, trend_row, unknown_values
+from tester.service.values import (
+    NOTHING_WANTED,
+    friction,
+    measured,
+    screen_of,
+    trend_row,
+    unknown_values,
+    with_pressure,
+)
 from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
 from tester.store.run_reader import RunReader
 from tester.tui.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
@@ -122,14 +130,15 @@ class Playback:
 
     def _values(self, at_s: float, index: int, info: ConditionInfo | None) -> tuple[Value, ...]:
         if index < 0:
-            return self.specs
+            return with_pressure(self.specs, self.run.info.metadata)
         row = {name: column[index] for name, column in self.samples.items()}
         age_s = at_s - row["time_s"]
-        return tuple(
+        found = tuple(
             measured(spec, self._measured(channel, row), self._wanted(channel, row, info), age_s,
                      "good" if age_s <= OLD_S else "stale")
             for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
         )  # fmt: skip
+        return with_pressure(found, self.run.info.metadata)
 
     def _measured(self, channel: Channel, row: dict[str, float]) -> float | None:
         """Return a channel's value in a sample; None if it was not recorded."""

@@ -12,7 +12,7 @@ from itertools import product
 from typing import Final, Generic, NamedTuple, TypeAlias, TypeVar
 
 from tester.analysis import left_out, terms
-from tester.analysis.pressure import AREA_MM2, AREA_SOURCE
+from tester.analysis.pressure import area_metadata
 from tester.base.axes import AxisValue, Setpoint, condition_words
 from tester.inputs.recipe.plan import Settings
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, OrderModel, Recipe
@@ -132,9 +132,7 @@ def metadata_of(recipe: Recipe) -> dict[str, str]:
         if recipe.abrasive.id is not None:
             result["abrasive_id"] = recipe.abrasive.id
     if recipe.contact is not None:
-        result[AREA_MM2] = f"{recipe.contact.area:g}"
-        if recipe.contact.source:
-            result[AREA_SOURCE] = recipe.contact.source
+        result |= area_metadata(recipe.contact.area, recipe.contact.source)
     result |= specimen_metadata(recipe)
     if recipe.humidity is not None:
         result["humidity_percent"] = f"{recipe.humidity:g}"

@@ -14,7 +14,7 @@ from tester.analysis.terms import PREFIX, Term
 from tester.base.source import InvalidSource, Problem, Tree, read_tree
 from tester.base.units import shown
 from tester.base.validation import problems_of
-from tester.inputs.recipe.pressures import with_loads
+from tester.inputs.recipe.pressures import with_area, with_loads
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
 from tester.inputs.recipe.semantics import semantic_problems
@@ -63,7 +63,7 @@ def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | Non
     other = _other_kind(tree, rig)
     if other:
         raise InvalidSource(other)
-    tree, of_pressures = with_loads(tree)
+    tree, of_pressures = with_loads(with_area(tree, rig))
     recipe, more = validated(tree, part)
     if of_pressures:  # then the load that is missing is the pressure's
         more = [one for one in more if not one.message.startswith(f"{LOAD} is missing")]

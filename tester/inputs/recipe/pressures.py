@@ -1,4 +1,5 @@
-"""Pressures in a recipe: a grid's ``pressure`` in place of its ``load``, over the area that the recipe states.
+"""Pressures in a recipe: a grid's ``pressure`` in place of its ``load``, over the area that the recipe or the rig file
+states.
 
 They become loads as soon as the file is read: schema, checks against the rig and the plan know loads alone. A load has
 the place of its pressure in the file.
@@ -15,9 +16,12 @@ from tester.base.source import Location, Problem, Tree, Value
 from tester.base.units import Quantity, UnitError, as_text
 from tester.base.validation import Section, problems_of
 from tester.inputs.recipe.axis_lists import Listed
+from tester.inputs.rig import Rig
+from tester.inputs.rig.contact import LONGEST
 
 PRESSURE: Final = "pressure"
 CONTACT: Final = "contact"
+AREA: Final = "area"
 DIGITS: Final = 9
 """Significant digits of a load made of a pressure: the product's own, without the noise of a float."""
 _N_PER_PA_MM2: Final = 1e-6
@@ -27,8 +31,8 @@ class ContactSection(Section, frozen=True):
     """What the load is spread over."""
 
     area: Annotated[float, Quantity("mm2", gt=0, le=1e5)]
-    """nominal area of contact of every specimen: load over area is the pressure"""
-    source: Annotated[str, Field(max_length=500)] = ""
+    """nominal area of contact of every specimen, in place of the rig file's: load over area is the pressure"""
+    source: Annotated[str, Field(max_length=LONGEST)] = ""
     """where the area comes from, such as "die of 10 mm x 10 mm" """
 
 
@@ -36,6 +40,15 @@ class _Pressures(Section, frozen=True):
     """A grid's pressures, in Pa."""
 
     pressure: Annotated[list[float], Listed("Pa", gt=0)]
+
+
+def with_area(tree: Tree, rig: Rig) -> Tree:
+    """Return a recipe's tree with the area that counts: its own ``contact``, else that of the rig's file, if any."""
+    top = tree.data
+    if rig.contact is None or not isinstance(top, dict) or CONTACT in top:
+        return tree
+    stated: Value = {AREA: as_text(rig.contact.area, "mm2"), "source": rig.contact.source}
+    return Tree(tree.name, tree.text, {**top, CONTACT: stated}, tree.positions, tree.keys)
 
 
 def with_loads(tree: Tree) -> tuple[Tree, list[Problem]]:
@@ -72,7 +85,10 @@ def _loads(tree: Tree, grid: dict[str, Value], at: Location) -> tuple[list[Value
         return [], problems_of(error, own, _Pressures)
     area_mm2 = _area_mm2(tree)
     if area_mm2 is None:
-        why = f"no area is known to spread a load over (expected {CONTACT}: {{area: 100 mm2}} in the recipe, or load)"
+        why = (
+            f"no area is known to spread a load over (expected {CONTACT}: {{area: 100 mm2}} in the recipe, that section"
+            " with its source in the rig file, or load)"
+        )
         return [], [tree.problem(at, f"{PRESSURE}: {why}")]
     return [as_text(float(f"{one * area_mm2 * _N_PER_PA_MM2:.{DIGITS}g}"), "N") for one in pressures_pa], []
 
@@ -80,7 +96,7 @@ def _loads(tree: Tree, grid: dict[str, Value], at: Location) -> tuple[list[Value
 def _area_mm2(tree: Tree) -> float | None:
     """Return the recipe's area; None where there is none that can be read."""
     contact = tree.data.get(CONTACT) if isinstance(tree.data, dict) else None
-    written = contact.get("area") if isinstance(contact, dict) else None
+    written = contact.get(AREA) if isinstance(contact, dict) else None
     try:
         return Quantity("mm2", gt=0.0).read(written)
     except UnitError:

@@ -14,9 +14,11 @@ from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, Type
 
 from drivers.axis import AxisConfig
 from drivers.canopen.node_config import NodeConfig
+from tester.analysis.pressure import area_metadata
 from tester.base.config_reader import FURTHER_KEYS, LEFT_OUT, Range, as_text, as_tree
 from tester.base.quantities import Quantities
 from tester.base.source import Location
+from tester.inputs.rig.contact import ContactConfig
 from tester.inputs.rig.key_classes import HIGHER, LOWER, Bounded, Free, Held, Inside, class_of
 from tester.inputs.rig.parameter import SECTION, Parameter, Values
 from tester.inputs.rig.safety_input import SafetyInput
@@ -252,6 +254,8 @@ class Rig:
     safety_inputs: Mapping[str, SafetyInput] = field(default_factory=dict[str, SafetyInput], metadata=LEFT_OUT)
     shares: Mapping[str, ShareConfig] = field(default_factory=dict[str, ShareConfig], metadata=LEFT_OUT)
     """What fails together, besides the devices of a line (tester.inputs.rig.further_sensors.shares_of)."""
+    contact: ContactConfig | None = field(default=None, metadata=LEFT_OUT)
+    """Area under the load, unless a recipe states another."""
 
     @classmethod
     def of(cls: type[OneRig], rig: Rig) -> OneRig:
@@ -290,6 +294,11 @@ class Rig:
     def drives(self) -> Mapping[str, AxisConfig]:
         """Return the axes that have a drive on the bus, by name."""
         raise NotImplementedError
+
+    @property
+    def area_metadata(self) -> dict[str, str]:
+        """Return the area of ``contact`` as a run's metadata; a run's own counts before it."""
+        return area_metadata(self.contact.area, self.contact.source) if self.contact is not None else {}
 
     @property
     def plant(self) -> Any:

@@ -248,3 +248,7 @@ class TrackConfig(Rig):
             yield ("sim", "motion"), f"is {self.sim.motion}, and track is {self.track}"
         if self.simulated and self.chamber != self.sim.enclosed:
             yield ("sim", "enclosed"), "contradicts devices on whether there is a chamber"
+        own_mm2 = self.sim.contact.area
+        if self.simulated and self.sim.of_materials and self.contact is not None and self.contact.area != own_mm2:
+            message = f"sim.law {self.sim.law} rubs on {own_mm2:g} mm2 (sim.contact.area; expected the same)"
+            yield ("contact", "area"), message

@@ -10,13 +10,15 @@ import pytest
 
 from sim.physics.materials import Components
 from tester.kinds.wheel_on_belt.fit.fits import FITS
-from tester.report.chart import Chart, ChartSurface, Figure, Series
-from tester.report.charts import ChartValue, Material, charts_of, repeats_chart, values_of
+from tester.report.chart import Chart, ChartSurface, Figure, SecondScale, Series
+from tester.report.charts import ChartValue, Material, charts_of, overlay_charts, repeats_chart, values_of
 from tester.report.law_charts import components_chart
+from tester.report.overview import overview_chart
 from tester.results.run_results import RunResults, results_of
 from tester.store.run_reader import RunReader
 from tests.tester.kinds.specimen_on_track.fit.made import made_track_run
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
+from tests.tester.results.test_conditions_table import with_area
 from tests.tester.store.build import CONDITION
 
 PUBLISHED = [ChartValue(held, mu) for held, mu in FITS.published_values()]
@@ -115,6 +117,43 @@ def test_compounds_have_a_panel_each_and_share_styles() -> None:
     found = chart({one.name: one for one in charts_of(Material(values))}, "load-by-temperature")
     assert [panel.title[:2] for panel in found.panels] == ["1#", "2#"]
     assert found.panels[0].series[1].style == found.panels[1].series[0].style
+
+
+def pressed(kpa_per_n: float | None, run: str = "") -> list[ChartValue]:
+    return [
+        ChartValue(CONDITION.setpoint.but(load=load, temperature=t), 0.7, run=run, kpa_per_n=kpa_per_n)
+        for load in (100.0, 200.0)
+        for t in (25.0, 40.0)
+    ]
+
+
+def test_an_axis_of_loads_has_a_scale_of_pressures_where_the_area_is_known() -> None:
+    found = {one.name: one for one in charts_of(Material(pressed(2.5)))}
+    assert chart(found, "load-by-temperature").x_second == SecondScale("pressure (kPa)", 2.5)
+    by_load, surface = chart(found, "temperature-by-load"), found["surface"]
+    assert by_load.x_second is None
+    assert [one.label for one in by_load.panels[0].series] == ["100 N (250 kPa)", "200 N (500 kPa)"]
+    assert isinstance(surface, ChartSurface) and surface.x_label == "load (N)"
+    assert surface.x_second == SecondScale("pressure (kPa)", 2.5) and surface.y_second is None
+    unknown = {one.name: one for one in charts_of(Material(pressed(None)))}
+    assert chart(unknown, "load-by-temperature").x_second is None
+    assert [one.label for one in chart(unknown, "temperature-by-load").panels[0].series] == ["100 N", "200 N"]
+
+
+def test_runs_of_different_areas_share_no_scale_of_pressures() -> None:
+    alike = {one.name: one for one in overlay_charts([*pressed(2.5, "a"), *pressed(2.5, "b")])}
+    other = {one.name: one for one in overlay_charts([*pressed(2.5, "a"), *pressed(5.0, "b")])}
+    assert alike["load-of-runs"].x_second == SecondScale("pressure (kPa)", 2.5)
+    assert other["load-of-runs"].x_second is None
+
+
+def test_values_and_the_overview_of_a_run_know_its_area(results: RunResults) -> None:
+    stated = with_area(results, "250")
+    assert {value.kpa_per_n for value in values_of(stated)} == {4.0}
+    overview = overview_chart([("", stated)])
+    assert overview is not None
+    of_load = next(panel for panel in overview.panels if panel.y_label == "load (N)")
+    assert of_load.y_second == SecondScale("pressure (kPa)", 4.0)
 
 
 def test_nothing_measured_gives_no_chart() -> None:

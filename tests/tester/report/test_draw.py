@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tester.base.plugins import MissingExtraError
+from tester.report.chart import ChartSurface, SecondScale
 from tester.report.draw import COLOURS, DASHES, FORMATS, MARKS, draw
 from tester.report.page import inline_svg
 from tests.tester.report.samples import CHART, FIGURES
@@ -57,6 +58,21 @@ def test_the_same_chart_gives_the_same_file(ending: str, tmp_path: Path) -> None
 def test_a_drawing_says_its_units_in_text_of_the_svg(tmp_path: Path) -> None:
     draw(CHART, tmp_path / "a.svg")
     assert "load (N)" in (tmp_path / "a.svg").read_text(encoding="utf-8")
+
+
+def test_a_second_scale_is_drawn_in_its_unit() -> None:
+    scale = SecondScale("pressure (kPa)", 7.0)
+    over, plain = inline_svg(replace(CHART, x_second=scale), "a"), inline_svg(CHART, "b")
+    # 2000 kPa are 286 N: a mark of its own, not the axis's in another unit.
+    assert ">pressure (kPa)<" in over and ">2000<" in over
+    assert ">pressure (kPa)<" not in plain and ">2000<" not in plain
+
+
+def test_a_surface_has_its_second_marks_at_its_values() -> None:
+    surface = FIGURES["surface"]
+    assert isinstance(surface, ChartSurface)
+    drawn = inline_svg(replace(surface, x_second=SecondScale("pressure (kPa)", 1.7)), "a")
+    assert ">170<" in drawn and ">340<" in drawn
 
 
 def test_styles_differ_in_mark_dash_and_colour() -> None:

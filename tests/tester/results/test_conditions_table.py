@@ -15,7 +15,8 @@ from tester.cli.main import invoke
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.results import conditions_table as module
 from tester.results.columns import Column, Output
-from tester.results.conditions_table import ConditionRow, conditions_table
+from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table
+from tester.results.measured_tables import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.store.run_reader import RunReader
 from tester.tui.stored import read
@@ -141,3 +142,7 @@ def test_a_pressure_is_beside_the_load_only_where_an_area_is_known(tmp_path: Pat
         assert [table["pressure_kpa"].cell(row) for row in table.rows] == [400.0, 800.0]
         shown = [column.key for column in table.view(Output.SHOW, ("load_n",)).columns]
         assert shown[:2] == ["load_n", "pressure_kpa"]
+        first = [column.key for column in table.view(Output.END, axis_keys(results.axes)).columns]
+        assert first[first.index("load_n") + 1] == "pressure_kpa"
+        ordered = [column.key for column in repeats_table(with_area(results, "250")).columns]
+        assert ordered[ordered.index("load_n") + 1] == "pressure_kpa"

@@ -24,6 +24,7 @@ specimens: [{compound: "1#"}]
 measure: {wheel_speed: 0.8 m/s, repeats: 3, window: 5 rev, temperature_band: 2 degC}
 grids:
   - {name: one, slip_velocity: 200 mm/s, load: 100 N, temperature: 25 degC}
+contact: {area: 500 mm2, source: ink print}
 """
 PICTURES = Path(__file__).parents[3] / "docs" / "pictures.py"
 
@@ -78,6 +79,9 @@ def test_a_moment_shows_what_was_recorded_at_it(run: Path, playback: Playback) -
         state = app.scene.state
         assert state is not None and state.progress.over == 0 and state.progress.repeats == 3
         surface = state.value("surface")
+        load, pressure = state.value("load"), state.value("pressure")
+        assert load is not None and pressure is not None and pressure.setpoint == 200.0
+        assert load.value is not None and pressure.value == pytest.approx(2.0 * load.value)
         assert surface is not None and surface.value is not None and abs(surface.value - 25.0) < 3.0
         assert all(event.t_s <= at_s for event in app.scene.events)
         await press("f3")
@@ -116,7 +120,7 @@ def test_the_runs_own_line_stands_in_the_table_of_runs(run: Path, playback: Play
 
 def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Playback) -> None:
     stored = read(str(run), run.parent)
-    assert [row.cells[:5] for row in stored.rows] == [("1#", "200", "100", "0", "25")]
+    assert [row.cells[:6] for row in stored.rows] == [("1#", "200", "100", "200.0", "0", "25")]
     row, found = condition(run, 1, 40)
     shown = stored.rows[0]
     assert replace(row, cells=shown.cells) == shown

@@ -1,4 +1,4 @@
-"""Pressures in a recipe become loads, over the area that the recipe states."""
+"""Pressures in a recipe become loads, over the area that recipe or rig file state."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from tester.base.validation import editor_schema
 from tester.inputs.recipe.conditions import metadata_of
 from tester.inputs.recipe.loader import check, load_checked
 from tester.inputs.recipe.pressures import with_loads
-from tester.kinds import load_rig
+from tester.kinds import load_rig, load_rig_text
 from tester.kinds.specimen_on_track.recipe.part import PART
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
@@ -27,6 +27,7 @@ grids:
     track_speed: 1e-4 m/s
 """
 RIG = TrackConfig.of(load_rig("grosch"))
+STATED = TrackConfig.of(load_rig("grosch", ["contact={area: 50 mm2, source: 'drawing 12'}"]))
 
 
 def tree_of(text: str) -> Tree:
@@ -94,6 +95,42 @@ def test_the_area_is_on_record_and_makes_a_pressure_of_a_load() -> None:
     metadata = metadata_of(load_checked(TEXT, RIG, PART).recipe)
     assert (metadata[AREA_MM2], metadata[AREA_SOURCE]) == ("100", "die of 10 mm x 10 mm")
     assert pressure_kpa(20.0, metadata) == 200.0 and pressure_kpa(20.0, {}) is None
+
+
+def test_the_rigs_area_counts_where_the_recipe_states_none() -> None:
+    own = load_checked(TEXT.replace(AREA, "").replace("100 kPa, 0.2", "0.2 MPa, 0.4"), STATED, PART)
+    assert own.recipe.grids[0].model_dump()["load"] == [10.0, 20.0]
+    metadata = metadata_of(own.recipe)
+    assert (metadata[AREA_MM2], metadata[AREA_SOURCE]) == ("50", "drawing 12")
+
+
+def test_the_recipes_area_counts_before_the_rigs() -> None:
+    metadata = metadata_of(load_checked(TEXT, STATED, PART).recipe)
+    assert (metadata[AREA_MM2], metadata[AREA_SOURCE]) == ("100", "die of 10 mm x 10 mm")
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        ("contact={area: 50 mm2}", "source is missing"),
+        ("contact={area: 50 mm2, source: ' '}", "expected where the area comes from"),
+        ("contact={area: 0 mm2, source: die}", "area: 0 mm2 is too small"),
+        ("contact={area: 5 mm, source: die}", "has the unit of length"),
+    ],
+)
+def test_an_area_of_a_rig_file_has_a_unit_and_a_source(stated: str, said: str) -> None:
+    with pytest.raises(InvalidSource, match=said):
+        load_rig("grosch", [stated])
+
+
+def test_the_rigs_area_is_that_on_which_a_simulated_law_of_materials_rubs() -> None:
+    with pytest.raises(InvalidSource, match="persson rubs on 100 mm2"):
+        load_rig("grosch", ["sim.law=persson", "contact={area: 50 mm2, source: die}"])
+    load_rig("grosch", ["sim.law=persson", "sim.contact.area=50", "contact={area: 50 mm2, source: die}"])
+
+
+def test_an_area_survives_the_stored_rig_file() -> None:
+    assert load_rig_text(STATED.text) == STATED and "\ncontact:" not in RIG.text
 
 
 def test_a_simulated_law_of_pressure_needs_the_recipes_area() -> None:
