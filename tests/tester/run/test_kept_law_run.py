@@ -11,9 +11,8 @@ from tester.results.verify import verify
 from tester.run.folder import read_work
 from tester.run.session import Session
 from tester.run.session_options import SessionOptions
-from tester.store.writer import RunWriter
 from tests.tester.inputs.kept_laws.kept_example import example_text
-from tests.tester.run.test_resumed_run import SETS, TEXT, StoppedError
+from tests.tester.run.cut_short import SETS, cut_short
 from tests.tester.run.test_session import Screen
 
 OTHER = {"a": {"value": 0.3, "logarithm": True}, "n": {"value": 0.2}, "m": {"value": -0.1, "fitted": False}}
@@ -23,25 +22,8 @@ OTHER = {"a": {"value": 0.3, "logarithm": True}, "n": {"value": 0.2}, "m": {"val
 def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run by a kept law that died in the middle of its second repeat, beside its recipe and its law."""
     home = tmp_path_factory.mktemp("cut")
-    (home / "short.yaml").write_text(TEXT, encoding="utf-8")
     (home / "law.yaml").write_text(example_text(compound="1#"), encoding="utf-8")
-    begin = RunWriter.begin_repeat
-
-    def dying(self: RunWriter, condition: int, repeat: int, *rest: float, **more: int) -> int:
-        key = begin(self, condition, repeat, *rest, **more)  # type: ignore[arg-type]
-        if repeat == 2:
-            self.flush()
-            raise StoppedError
-        return key
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(RunWriter, "begin_repeat", dying)
-        sets = (*SETS, f"sim.friction_model={home / 'law.yaml'}")
-        options = SessionOptions(recipe=str(home / "short.yaml"), out=home / "runs", overrides=sets, seed=3)
-        with pytest.raises(StoppedError):
-            Session(options, Screen()).run()
-    (folder,) = (home / "runs").iterdir()
-    return folder
+    return cut_short(home, sets=(*SETS, f"sim.friction_model={home / 'law.yaml'}"))
 
 
 @pytest.fixture

@@ -19,7 +19,7 @@ from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
 from tester.tui.playback import load
 from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
-from tests.tester.run.test_resumed_run import StoppedError
+from tests.tester.run.cut_short import StoppedError
 from tests.tester.run.test_session import Screen
 
 TEXT = (

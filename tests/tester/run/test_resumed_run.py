@@ -17,44 +17,16 @@ from tester.run.session import CannotStartError, Session
 from tester.run.session_options import SessionOptions
 from tester.store.resumable import resume_point
 from tester.store.run_reader import RunReader
-from tester.store.writer import RunWriter
-from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
+from tests.tester.run.cut_short import SETS, TEXT, cut_short
 from tests.tester.run.test_session import Screen
 
-TEXT = (
-    SHORT.replace("repeats: 1", "repeats: 3")
-    .replace("window: 14 rev", "window: 8 rev\n  temperature_band: 4 degC")
-    .replace("temperature: 25 degC", "temperature: 24 degC")
-    .replace("load: 200 N", "load: 50 N")
-)
-SETS = (*QUIET, "sim.friction_heat_fraction=0")
 SETS_ARGUMENTS = [argument for override in SETS for argument in ("--set", override)]
-
-
-class StoppedError(Exception):
-    """The process ends here, as far as the store knows."""
 
 
 @pytest.fixture(scope="module")
 def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that died in the middle of its second repeat."""
-    home = tmp_path_factory.mktemp("cut")
-    (home / "short.yaml").write_text(TEXT, encoding="utf-8")
-    begin = RunWriter.begin_repeat
-
-    def dying(self: RunWriter, condition: int, repeat: int, *rest: float, **more: int) -> int:
-        key = begin(self, condition, repeat, *rest, **more)  # type: ignore[arg-type]
-        if repeat == 2:
-            self.flush()
-            raise StoppedError
-        return key
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(RunWriter, "begin_repeat", dying)
-        options = SessionOptions(recipe=str(home / "short.yaml"), out=home / "runs", overrides=SETS, seed=3)
-        with pytest.raises(StoppedError):
-            Session(options, Screen()).run()
-    return next((home / "runs").iterdir())
+    return cut_short(tmp_path_factory.mktemp("cut"))
 
 
 @pytest.fixture

@@ -22,9 +22,8 @@ from tester.run.session import CannotStartError, Session
 from tester.run.session_options import SessionOptions
 from tester.store.records import StoredMaterial
 from tester.store.run_reader import RunReader
-from tester.store.writer import RunWriter
 from tests.tester.inputs.recipe.texts import SMALL, recipe
-from tests.tester.run.test_resumed_run import SETS, TEXT, StoppedError
+from tests.tester.run.cut_short import TEXT, cut_short
 from tests.tester.run.test_session import Screen
 
 OWN = """\
@@ -52,23 +51,7 @@ def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run of that compound on S0 that died in the middle of its second repeat."""
     home = tmp_path_factory.mktemp("cut")
     write_own(home)
-    (home / "short.yaml").write_text(TEXT + "abrasive: {name: S0}\n", encoding="utf-8")
-    begin = RunWriter.begin_repeat
-
-    def dying(self: RunWriter, condition: int, repeat: int, *rest: float, **more: int) -> int:
-        key = begin(self, condition, repeat, *rest, **more)  # type: ignore[arg-type]
-        if repeat == 2:
-            self.flush()
-            raise StoppedError
-        return key
-
-    with pytest.MonkeyPatch.context() as patch:
-        patch.delenv("TESTER_MATERIALS", raising=False)
-        patch.setattr(RunWriter, "begin_repeat", dying)
-        options = SessionOptions(recipe=str(home / "short.yaml"), out=home / "runs", overrides=SETS, seed=3)
-        with pytest.raises(StoppedError):
-            Session(options, Screen()).run()
-    return next((home / "runs").iterdir())
+    return cut_short(home, TEXT + "abrasive: {name: S0}\n")
 
 
 @pytest.fixture
