@@ -41,7 +41,7 @@ class TrackContact:
     protrusion: Annotated[float, "mm"] = 3.0  # [A] a new specimen is out of its holder by this
     squeeze: Annotated[float, "N/mm"] = 80.0  # [A] stiffness of the specimen under the load: 5 MPa, 100 mm2, 6 mm
     expansion: Annotated[float, "mm/K"] = 0.001  # [A] of the specimen: 2e-4 per kelvin, 6 mm
-    wear: Annotated[float, "mm"] = 0.0005  # [A] of the specimen in a metre of sliding
+    wear: Annotated[float, "mm/m"] = 0.0005  # [A] height that the specimen loses over its sliding distance
     runout: Annotated[float, "mm"] = 0.02  # [A] of a disc, to either side
     area: Annotated[float, "mm2"] = 100.0  # [A] nominal, of the specimen on the track: makes a pressure of the load
     wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction, by a law that does not know adhesion

@@ -74,6 +74,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("a damping", "400 N s/m", {"N s/m": _ONE}),
     _Kind("a wear rate", "0.08 mm3/(N m)", {"mm3/(N m)": _ONE}),
     _Kind("a growth with temperature", "0.006 mm/K", {"mm/K": _ONE, "um/K": _MILLI}),
+    _Kind("a loss of height over the way", "0.0005 mm/m", {"mm/m": _ONE, "um/m": _MILLI}),
     _Kind("a rate of temperature", "0.05 K/s", {"K/s": _ONE, "K/min": Fraction(1, 60)}),
     _Kind("a drift with temperature", "0.1 N/K", {"N/K": _ONE}),
     _Kind("a rise with power", "5 K/W", {"K/W": _ONE}),

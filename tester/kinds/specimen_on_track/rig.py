@@ -26,6 +26,8 @@ from tester.machine.interlock_table import InterlockTable
 
 _POSITIVE = Range(gt=0.0)
 _NOT_NEGATIVE = Range(ge=0.0)
+LOST_MM: Final = 1.0
+"""An arm without its specimen is at least this much below the lowest height with one, mm [A]."""
 METRES: Final = {"mm/s": 1e-3, "m/s": 1.0}
 """Metres per unit of length of the track's drive."""
 
@@ -80,6 +82,11 @@ class ArmConfig:
     within_mm: Annotated[
         float, "mm", _POSITIVE, Bounded(LOWER, "1 mm", "the specimen touches 1 mm above its lowered place", own=True)
     ]
+    protrusion_mm: Annotated[
+        float, "mm", _POSITIVE,
+        Bounded(HIGHER, "3 mm", "of it wear and thickness take 1 mm each: 1 mm shows a lost specimen", own=True),
+    ]  # fmt: skip
+    """Least height of a new specimen out of its holder."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -150,7 +157,7 @@ class TrackConfig(Rig):
     packaged: ClassVar[Mapping[str, str]] = KIND.rigs
     may_lack: ClassVar[tuple[str, ...]] = (
         *Rig.may_lack, "axes.*.rpdo_deadline", "axes.*.inputs_period", "axes.*.max_torque_per_mille",
-        "axes.*.home_timeout", "devices.*.emissivity", "gates", "interlocks", "arming", "heat",
+        "axes.*.home_timeout", "devices.*.emissivity", "arm.protrusion", "gates", "interlocks", "arming", "heat",
     )  # fmt: skip
     manual: ClassVar[tuple[str, ...]] = ("lift",)
     own: ClassVar[Mapping[str, OwnDevice]] = {
@@ -248,6 +255,13 @@ class TrackConfig(Rig):
             yield ("sim", "motion"), f"is {self.sim.motion}, and track is {self.track}"
         if self.simulated and self.chamber != self.sim.enclosed:
             yield ("sim", "enclosed"), "contradicts devices on whether there is a chamber"
+        rows = self.interlocks
+        least_mm = rows.wear_mm + rows.thickness_mm + LOST_MM
+        if "height_sensor" in self.devices and not self.arm.protrusion_mm >= least_mm:
+            message = f"hides a lost specimen: interlocks.wear and thickness with {LOST_MM:g} mm beyond them are"
+            yield ("arm", "protrusion"), f"{message} {least_mm:g} mm (expected at least that, or less of both)"
+        if self.simulated and not self.sim.contact.protrusion >= self.arm.protrusion_mm:
+            yield ("sim", "contact", "protrusion"), f"is below arm.protrusion, {self.arm.protrusion_mm:g} mm"
         own_mm2 = self.sim.contact.area
         if self.simulated and self.sim.of_materials and self.contact is not None and self.contact.area != own_mm2:
             message = f"sim.law {self.sim.law} rubs on {own_mm2:g} mm2 (sim.contact.area; expected the same)"

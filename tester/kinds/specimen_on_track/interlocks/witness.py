@@ -32,12 +32,12 @@ repeats, 2 %."""
 WEAR_MM: Final = Parameter(
     "wear_mm", "mm", "0.8 mm", "the arm lower than with a new specimen by this, which wear may take ... [A]",
     NOT_NEGATIVE, hardest="1 mm",
-    because="specimens are 3 mm out of their holders: of these 1 mm is left to a lost one",
+    because="with thickness it leaves 1 mm of arm.protrusion to a lost specimen",
 )  # fmt: skip
 THICKNESS_MM: Final = Parameter(
     "thickness_mm", "mm", "0.5 mm",
     "... and by this, or higher by it [A]: load 0.25 mm, heat 0.1 mm, specimen, sensor ...",
-    hardest="1 mm", because="specimens are 3 mm out of their holders: of these 1 mm is left to a lost one",
+    hardest="1 mm", because="with wear it leaves 1 mm of arm.protrusion to a lost specimen",
 )  # fmt: skip
 STALE_HEIGHT_S: Final = Parameter(
     "stale_height_s", "s", "200 ms", "age of the arm's height: four polls [A]",

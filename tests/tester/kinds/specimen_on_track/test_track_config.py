@@ -44,6 +44,37 @@ def test_what_does_not_fit_together_is_refused(override: str, said: str) -> None
         load_rig("grosch", [override], accept_risk="what it says is tried")
 
 
+@pytest.mark.parametrize(
+    ("overrides", "said"),
+    [
+        (["arm.protrusion=2.2 mm"], "hides a lost specimen: .* are 2.3 mm"),
+        (["interlocks.wear=1 mm", "interlocks.thickness=1 mm", "arm.protrusion=2.9 mm"], "are 3 mm"),
+        (["arm.protrusion=3.1 mm"], "is below arm.protrusion, 3.1 mm"),
+        (["sim.contact.wear=0.001 mm"], "expected a loss of height over the way"),
+    ],
+)
+def test_a_lost_specimen_has_to_be_lower_than_a_worn_one(overrides: list[str], said: str) -> None:
+    with pytest.raises(InvalidSource, match=said):
+        load_rig("pin-on-disc", overrides, accept_risk="what it says is tried")
+
+
+def test_a_protrusion_that_shows_a_lost_specimen_is_accepted() -> None:
+    own = load_rig("pin-on-disc", ["arm.protrusion=2.3 mm"], accept_risk="tried")
+    assert TrackConfig.of(own).arm.protrusion_mm == 2.3
+    rig = TrackConfig.of(load_rig("pin-on-disc", ["sim.contact.wear=2 um/m"]))
+    assert rig.sim.contact.wear == 0.002
+
+
+def test_less_than_three_millimetres_want_a_reason() -> None:
+    with pytest.raises(InvalidSource, match=r"arm\.protrusion"):
+        load_rig("pin-on-disc", ["arm.protrusion=2.9 mm"])
+
+
+def test_without_a_height_sensor_the_protrusion_shows_nothing() -> None:
+    own = load_rig("grosch", ["arm.protrusion=2.1 mm"], accept_risk="tried")
+    assert TrackConfig.of(own).arm.protrusion_mm == 2.1
+
+
 def test_an_arm_without_a_drive_and_a_rig_without_a_chamber() -> None:
     rig = TrackConfig.of(load_rig("pin-on-disc"))
     assert list(rig.drives()) == ["track"] and not rig.chamber and not rig.linear
