@@ -7,7 +7,7 @@ from typing import Any, Final
 
 from tester.base.screen import SoakView
 from tester.machine.context import AnyContext
-from tester.machine.trend import Trend
+from tester.machine.trend import TemperatureTrend
 
 SHOW_S: Final = 1.0
 """Period for reporting the progress of a wait, s."""
@@ -30,7 +30,7 @@ class SoakWait:
         """Time since when the temperature has been in its band; infinite outside."""
         self.shown_s: float = -inf
         self.reached = False
-        self._trend = Trend()
+        self._trend = TemperatureTrend()
 
     def over(self, ctx: AnyContext, work: str, shown_c: float, *, valid: bool = True) -> bool:
         """Return whether the wait is over, soaked or given up (``reached``), at the temperature of this scan.

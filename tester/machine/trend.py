@@ -13,7 +13,7 @@ standard deviations of noise.
 """
 
 
-class Trend:
+class TemperatureTrend:
     """The greatest change of a temperature from one scan to the next, which fades."""
 
     __slots__ = ("last_c", "moved_k")

@@ -6,12 +6,12 @@ from math import nan
 
 import pytest
 
-from tester.machine.trend import FADES, SURE, Trend
+from tester.machine.trend import FADES, SURE, TemperatureTrend
 
 
-def trend(*readings_c: float) -> Trend:
+def trend(*readings_c: float) -> TemperatureTrend:
     """Return the trend after these readings."""
-    made = Trend()
+    made = TemperatureTrend()
     for reading_c in readings_c:
         made.follow(reading_c)
     return made

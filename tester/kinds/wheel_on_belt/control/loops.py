@@ -18,7 +18,7 @@ from tester.kinds.wheel_on_belt.interlocks.inputs import StopStart
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.rig.loop_sections import HeatLoopConfig, LoadLoopConfig
 from tester.machine.state import ControlState
-from tester.machine.trend import Trend
+from tester.machine.trend import TemperatureTrend
 
 _INF: Final = inf
 _LOAD: Final = Press.LOAD
@@ -223,5 +223,5 @@ class WheelState(ControlState[Setpoints]):
         """Time since which the wheel has been confirmed turning."""
         self.hub_ceiling: list[tuple[float, float]] = []
         """(time, hub setpoint) within ``runaway_window``, only falling setpoints: the first is the highest."""
-        self.cooling = Trend()
+        self.cooling = TemperatureTrend()
         """The hub's temperature in a cool-down."""

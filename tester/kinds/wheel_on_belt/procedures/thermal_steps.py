@@ -13,7 +13,7 @@ from tester.kinds.wheel_on_belt.run.past_runs import KIND, LEAST_J, LEAST_RISE_K
 from tester.machine.activity import Activity
 from tester.machine.motions import Ask, Power, Sequence
 from tester.machine.soak import SHOW_S, SoakWait
-from tester.machine.trend import Trend
+from tester.machine.trend import TemperatureTrend
 
 NEAR_AMBIENT_K: Final = 3.0
 """A setpoint within this of ambient is reached slowly, by heating or cooling: the soak only reaches the band [A]."""
@@ -138,7 +138,7 @@ class RestStep:
         self.shown_s = float("-inf")
         self.late: Activity[Context] | None = None
         self.ask_when_late = ask_when_late
-        self.trend = Trend()
+        self.trend = TemperatureTrend()
 
     def resume(self, ctx: Context) -> None:
         """Resume standing, or stopping."""
@@ -193,7 +193,7 @@ class CoolDown:
         self.turning = False
         self.began_s = float("nan")
         self.shown_s = float("-inf")
-        self.trend = Trend()
+        self.trend = TemperatureTrend()
 
     def resume(self, ctx: Context) -> None:
         """Resume turning, or starting to turn."""
