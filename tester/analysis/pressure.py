@@ -1,4 +1,4 @@
-"""The nominal pressure of a load, where recipe or rig file state the area under the rubber."""
+"""The nominal pressure of a load, where a recipe or a rig file states the area under the rubber."""
 
 from __future__ import annotations
 

@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
+import os
 import sys
 import tempfile
 from functools import partial
@@ -23,7 +24,9 @@ from statistics import median
 from typing import NamedTuple
 
 from tester.cli.main import invoke
-from tester.inputs.kept_laws.law_value import KeptLaw, load_law
+from tester.inputs.kept_laws.law_materials import read_law
+from tester.inputs.kept_laws.law_value import KeptLaw
+from tester.inputs.materials.library import VARIABLE
 from tester.results.run_results import results_of
 from tester.store.run_reader import RunReader
 
@@ -35,6 +38,8 @@ SPREAD = 2.6
 C1, C2_K = 17.44, 51.6
 """WLF's constants at the glass transition, about which those of a rubber are drawn."""
 FREQUENCIES_HZ = 0.3, 1.0, 3.0, 10.0, 30.0, 100.0
+OWN_LAW = "persson"
+"""Law for data of which the other says nothing: that of the rubber's and the surface's own files."""
 LOAD_N, AREA_MM2 = 20, 100
 FITTED = ([0, 10, 20, 30, 40, 50], ["1e-5", "1e-4", "1e-3", "1e-2"])
 HELD_OUT = ([5, 25, 45], ["3.162e-5", "3.162e-4", "3.162e-3"])
@@ -60,6 +65,7 @@ class Told(NamedTuple):
     greatest_percent: float = 0.0
     half_width_percent: float = 0.0
     doubts: int = 0
+    law: str = ""
 
 
 def drawn(seed: int) -> Stranger:
@@ -134,6 +140,7 @@ def call(*words: str, allowed: tuple[int, ...] = (0,)) -> str:
 def measure(seed: int, folder: Path, law: str) -> Told:
     """Go a laboratory's way with the compound of a seed. Raises CommandError."""
     stranger = drawn(seed)
+    os.environ[VARIABLE] = str(folder)  # the laboratory's folder
     (folder / "sweep.csv").write_text(stranger.sweep, encoding="utf-8")
     (folder / "compounds").mkdir()
     (folder / "surfaces").mkdir()
@@ -157,9 +164,12 @@ def measure(seed: int, folder: Path, law: str) -> Told:
     fitted = str(next((folder / "fitted").iterdir()))
     kept = folder / "law.yaml"
     call("fit", fitted, "--law", law, "--area", f"{AREA_MM2} mm2", "-o", str(kept), allowed=(0, 1))
+    if not kept.exists():  # the conditions say nothing of a parameter
+        law = OWN_LAW
+        call("fit", fitted, "--law", law, "--given", f"area={AREA_MM2}", "-o", str(kept), allowed=(0, 1))
     call("predict", "--law", str(kept), "--slip", "1 mm/s", "--load", f"{LOAD_N} N", "--temperature", "25 degC")
     call("figure", fitted, "--law", str(kept), "--format", "svg", "--out", str(folder / "figures"))
-    return held_against(seed, load_law(kept), next((folder / "held").iterdir()))
+    return held_against(seed, read_law(kept), next((folder / "held").iterdir()))._replace(law=law)
 
 
 def held_against(seed: int, law: KeptLaw, run: Path) -> Told:
@@ -175,7 +185,8 @@ def held_against(seed: int, law: KeptLaw, run: Path) -> Told:
         inside += told.low <= mu <= told.high
         off.append(100.0 * abs(mu / told.mu - 1.0))
         wide.append(50.0 * (told.high - told.low) / told.mu)
-    return Told(seed, (), inside, len(off), max(off, default=0.0), median(wide) if wide else 0.0, len(law.doubts))
+    half_percent = median(wide) if wide else 0.0
+    return Told(seed, (), inside, len(off), max(off, default=0.0), half_percent, len(law.doubts))
 
 
 def one(seed: int, law: str) -> Told:
@@ -204,7 +215,7 @@ def main(arguments: list[str] | None = None) -> int:
             for error in told.errors:
                 print(f"MISS seed {told.seed}: {error}", flush=True)
             if not told.errors:
-                print(f"     seed {told.seed}: {told.inside} of {told.held_out} inside, half-width"
+                print(f"     seed {told.seed}, {told.law}: {told.inside} of {told.held_out} inside, half-width"
                       f" {told.half_width_percent:.1f} %, off by {told.greatest_percent:.1f} % at most", flush=True)
     failed = sum(bool(told.errors) for told in found)
     held_out, inside = sum(told.held_out for told in found), sum(told.inside for told in found)
