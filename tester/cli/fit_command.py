@@ -15,16 +15,17 @@ from tester.cli.stored_runs import of_one_kind, print_left_out
 from tester.cli.text_table import dump, shown
 
 if TYPE_CHECKING:
-    from tester.analysis.fit.fit_law import FitPoint, Law
+    from tester.analysis.fit.fit_law import FitPoint, Law, Sourced
     from tester.analysis.fit.fit_part import FitPart, PublishedTable
     from tester.analysis.fit.joint import Errors, GroupFit
     from tester.kinds.kind import Kind
 
 
 class Conditions(NamedTuple):
-    """The conditions of all sources of a command, and their kind of rig."""
+    """The conditions of all sources of a command, their kind of rig, and its laws with the materials of the runs."""
 
     kind: Kind
+    part: FitPart
     points: list[FitPoint]
     left_out: list[tuple[str, str]]
 
@@ -35,7 +36,7 @@ class Conditions(NamedTuple):
         reasons = [law.leaves_out(point.nominal) for point in self.points]
         left_out = [(point.label, why) for point, why in zip(self.points, reasons, strict=True) if why]
         points = [point for point, why in zip(self.points, reasons, strict=True) if not why]
-        return Conditions(self.kind, points, [*self.left_out, *left_out])
+        return self._replace(points=points, left_out=[*self.left_out, *left_out])
 
 
 @command()
@@ -85,7 +86,7 @@ def fit(
     from tester.cli.keep_law import Given, keep
 
     fitted, others = _conditions(sources), _conditions(validation) if validation else None
-    part = _part(fitted.kind)
+    part = fitted.part
     _refuse_mixed(fitted, sources, others, validation)
     _refuse_unchecked(part, sources, validation, check=check)
     law = _law(part, law_name)
@@ -142,11 +143,16 @@ def _law(part: FitPart, name: str | None) -> Law:
 
 def _conditions(names: Sequence[str]) -> Conditions:
     """Return the conditions of sources of one kind."""
-    kind, found = of_one_kind(
-        names, lambda kind, name: _part(kind).packaged_points(name), lambda kind, folder: _part(kind).run_points(folder)
-    )
+    folders: list[Path] = []
+
+    def points_of(kind: Kind, folder: Path) -> Sourced:
+        folders.append(folder)
+        return _part(kind).run_points(folder)
+
+    kind, found = of_one_kind(names, lambda kind, name: _part(kind).packaged_points(name), points_of)
     points = [point for one in found for point in one.points]
-    return Conditions(kind, points, [entry for one in found for entry in one.left_out])
+    left_out = [entry for one in found for entry in one.left_out]
+    return Conditions(kind, _part(kind).of_runs(folders), points, left_out)
 
 
 def _held(law: Law, group: str, holds: Sequence[str]) -> dict[str, float]:

@@ -12,7 +12,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import io
-import os
 import sys
 import tempfile
 from functools import partial
@@ -26,7 +25,6 @@ from typing import NamedTuple
 from tester.cli.main import invoke
 from tester.inputs.kept_laws.law_materials import read_law
 from tester.inputs.kept_laws.law_value import KeptLaw
-from tester.inputs.materials.library import VARIABLE
 from tester.results.run_results import results_of
 from tester.store.run_reader import RunReader
 
@@ -140,7 +138,6 @@ def call(*words: str, allowed: tuple[int, ...] = (0,)) -> str:
 def measure(seed: int, folder: Path, law: str) -> Told:
     """Go a laboratory's way with the compound of a seed. Raises CommandError."""
     stranger = drawn(seed)
-    os.environ[VARIABLE] = str(folder)  # the laboratory's folder
     (folder / "sweep.csv").write_text(stranger.sweep, encoding="utf-8")
     (folder / "compounds").mkdir()
     (folder / "surfaces").mkdir()

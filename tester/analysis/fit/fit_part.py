@@ -101,6 +101,12 @@ class FitPart:
         """Return the conditions of a run; raises StoreError where it cannot be read."""
         raise NotImplementedError
 
+    def of_runs(self, folders: Sequence[Path]) -> FitPart:
+        """Return the part that looks for materials in the folders of these runs first; raises FitError where two runs
+        used different files of one name.
+        """
+        return self
+
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
         """Return a law as it applies to a group; raises FitError.
 

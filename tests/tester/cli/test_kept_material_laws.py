@@ -144,3 +144,40 @@ def test_a_run_is_compared_with_it_and_drawn_beside_it(home: Path, capsys: pytes
     assert invoke(["compare", "persson", "persson.yaml"]) == 0
     assert "24 of 24 inside the 95 % interval of persson.yaml" in capsys.readouterr().out
     assert invoke(["figure", "persson", "--law", "persson.yaml"]) == 0
+
+
+def own_compound(home: Path) -> Path:
+    """Put a copy of SBR under another name into the folder of a run, as a run of it does; return the folder."""
+    run = home / "runs" / "own"
+    law = true_law("persson")
+
+    def mu(celsius: float, speed_m_s: float) -> float:
+        return law.mu(celsius, 20.0, speed_m_s)
+
+    made_track_run(
+        run, (10.0, 20.0, 30.0, 40.0), SPEEDS_M_S, mu, compounds=("own",), repeats=3,
+        metadata={"abrasive": "silicon carbide"},
+    )  # fmt: skip
+    (run / "compounds").mkdir(exist_ok=True)
+    text = (recipes.FOLDER / "compounds" / "sbr.yaml").read_text(encoding="utf-8")
+    assert text.count("name: SBR\n") == 1
+    (run / "compounds" / "own.yaml").write_text(text.replace("name: SBR\n", "name: own\n"), encoding="utf-8")
+    return run
+
+
+def test_a_fit_reads_the_materials_that_the_run_used(home: Path) -> None:
+    own_compound(home)
+    assert invoke(["fit", "own", "--law", "persson", "--given", f"area={AREA_MM2:g}", "-o", "own.yaml"]) in (0, 1)
+    ours, theirs = load_law(home / "own.yaml"), load_law(home / "persson.yaml")
+    assert ours.model.parameters["q1"].value == pytest.approx(theirs.model.parameters["q1"].value, rel=0.05)
+
+
+def test_runs_with_different_files_of_one_compound_are_not_fitted_together(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = own_compound(home)
+    shutil.copytree(run, home / "runs" / "other")
+    changed = home / "runs" / "other" / "compounds" / "own.yaml"
+    changed.write_text(changed.read_text(encoding="utf-8") + "# measured again\n", encoding="utf-8")
+    assert invoke(["fit", "own", "other", "--law", "persson"]) == 1
+    assert "used different files of it" in capsys.readouterr().err

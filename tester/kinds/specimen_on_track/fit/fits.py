@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Final
@@ -26,6 +26,26 @@ def _library() -> Materials:
     return Library.beside()
 
 
+def _refuse_different(folders: Sequence[Path]) -> None:
+    """Raise FitError where two runs used different files of one name."""
+    from tester.inputs.kept_laws.law_materials import content_hash
+    from tester.inputs.materials.library import Library
+
+    seen: dict[tuple[str, str], tuple[str, Path]] = {}
+    for folder in folders:
+        library = Library([folder])
+        files = [library.compound(entry.name).file for entry in library.entries("compound")]
+        files += [library.surface_file(entry.name).file for entry in library.entries("surface")]
+        for file in files:
+            role, content = file.path.parent.name, content_hash(file)
+            before, other = seen.setdefault((role, file.name), (content, folder))
+            if content != before:
+                raise FitError(
+                    f"{role}/{file.name}: {other.name} and {folder.name} used different files of it (expected runs of"
+                    " the same material)"
+                )
+
+
 class TrackFits(FitPart):
     """Laws of a specimen on a track, and the conditions of runs."""
 
@@ -41,6 +61,12 @@ class TrackFits(FitPart):
         from tester.kinds.specimen_on_track.fit.run_data import run_points
 
         return run_points(folder)
+
+    def of_runs(self, folders: Sequence[Path]) -> FitPart:
+        from tester.inputs.materials.library import Library
+
+        _refuse_different(folders)
+        return TrackFits(lambda: Library([*folders, *Library.beside().folders]))
 
     def bound(self, law: Law, group: str, surface: str, figures: Mapping[str, float]) -> Law:
         """Return a law for a group, with the moduli of its compound and its surface if needed; raises FitError."""
