@@ -70,8 +70,8 @@ MUTANTS: Mapping[str, Mutant] = {
         (REPORT,),
     ),
     "charts: bars are half as long": Mutant(
-        "tester.report.charts", "row.result.budget.expanded, run)", "0.5 * row.result.budget.expanded, run)",
-        (REPORT,),
+        "tester.report.charts", "row.result.budget.expanded, run, kpa_per_n)",
+        "0.5 * row.result.budget.expanded, run, kpa_per_n)", (REPORT,),
     ),
     "overview: points are the coefficient as measured": Mutant(
         "tester.report.overview", "Mark(condition.at, result.mu, ", "Mark(condition.at, result.mu_resultant, ",
