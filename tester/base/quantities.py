@@ -8,8 +8,8 @@ kind.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 from typing import Any, Final
 
 _NAN: Final = float("nan")
@@ -80,6 +80,10 @@ class Screen:
     """Its column in the trend, with the unit for people; "" = none."""
     setpoint_trend: str = ""
     """Column of its setpoint in the trend; "" = none."""
+    lower: Figure | None = None
+    """The lower threshold, where it is not the negative of ``limit``."""
+    optional: bool = False
+    """Whether rigs without ``device`` leave the channel out of their screens."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,6 +212,16 @@ class Quantities:
     def index(self, name: str) -> int:
         """Return the position of a channel in a sample; raises KeyError."""
         return self._index[name]
+
+    def fitted_with(self, devices: Container[str]) -> Quantities:
+        """Return the table of a rig with these devices: no screen of it shows a channel whose device is missing."""
+
+        def fitted(channel: Channel) -> Channel:
+            screen = channel.screen
+            there = screen is None or not screen.optional or screen.device in devices
+            return channel if there else replace(channel, screen=None)
+
+        return Quantities(tuple(map(fitted, self.channels)), self.roles)
 
     def with_further(self, channels: Sequence[Channel]) -> Quantities:
         """Return the table of a rig with these further channels; raises ValueError for an invalid one."""

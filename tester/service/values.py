@@ -52,7 +52,7 @@ def unknown_value(channel: Channel, rig: object) -> Value:
     """Return a channel's value on a rig without its number: name, limits and bar range."""
     screen = screen_of(channel)
     high = screen.limit.of(rig) if screen.limit is not None else None
-    low = -high if high is not None and screen.both else None
+    low = screen.lower.of(rig) if screen.lower is not None else -high if high is not None and screen.both else None
     return Value(
         screen.key, channel.label, channel.read_as, None, None, low, high, None, None, screen.low.of(rig),
         screen.high.of(rig), channel.decimals, None, "none",

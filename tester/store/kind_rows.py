@@ -26,7 +26,7 @@ COLUMNS = ("position", "name", "unit", "label", "source", "mean", "decimals", "w
 ``screen``: JSON.
 """
 
-_FIGURES = ("low", "high", "limit")
+_FIGURES = ("low", "high", "limit", "lower")
 _ALONG, _ACROSS, _NORMAL, _TURN, _TEMPERATURE, _SLIDING, _DEPTH, _CORE = _ROLES = (
     "along", "across", "normal", "turn", "temperature", "sliding", "depth", "core",
 )  # fmt: skip
@@ -89,7 +89,7 @@ def _screen(text: str) -> Screen | None:
     if not text:
         return None
     stored = json.loads(text)
-    figures: dict[str, Any] = {name: Figure(**stored[name]) for name in _FIGURES if stored[name] is not None}
+    figures: dict[str, Any] = {name: Figure(**stored[name]) for name in _FIGURES if stored.get(name) is not None}
     return Screen(**{**stored, **figures})
 
 

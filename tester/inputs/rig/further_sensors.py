@@ -114,7 +114,7 @@ def _channel(name: str, device: str, number: Signal | NodeChannel) -> FurtherCha
 
 def quantities_on(rig: Rig) -> Quantities:
     """Return the channels of a run on a rig: its kind's, and those of its further sensors. Raises ProfileError."""
-    of_kind = rig.quantities
+    of_kind = rig.quantities.fitted_with(rig.devices)
     return of_kind.with_further(
         [further_channel.channel(place, of_kind) for place, further_channel in enumerate(further_channels(rig))]
     )

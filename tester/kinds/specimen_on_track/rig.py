@@ -221,6 +221,16 @@ class TrackConfig(Rig):
         return max(self.weights, default=0.0)
 
     @property
+    def height_low_mm(self) -> float:
+        """The lowest height of an arm whose specimen rests on the track, mm."""
+        return -(self.interlocks.wear_mm + self.interlocks.thickness_mm)
+
+    @property
+    def height_high_mm(self) -> float:
+        """The greatest height of such an arm, mm."""
+        return self.interlocks.thickness_mm
+
+    @property
     def metres(self) -> float:
         """Metres per unit of length of the track's drive."""
         return METRES[self.axes.track.unit]
@@ -255,8 +265,7 @@ class TrackConfig(Rig):
             yield ("sim", "motion"), f"is {self.sim.motion}, and track is {self.track}"
         if self.simulated and self.chamber != self.sim.enclosed:
             yield ("sim", "enclosed"), "contradicts devices on whether there is a chamber"
-        rows = self.interlocks
-        least_mm = rows.wear_mm + rows.thickness_mm + LOST_MM
+        least_mm = LOST_MM - self.height_low_mm
         if "height_sensor" in self.devices and not self.arm.protrusion_mm >= least_mm:
             message = f"hides a lost specimen: interlocks.wear and thickness with {LOST_MM:g} mm beyond them are"
             yield ("arm", "protrusion"), f"{message} {least_mm:g} mm (expected at least that, or less of both)"

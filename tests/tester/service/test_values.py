@@ -1,4 +1,4 @@
-"""Values for people: the nominal pressure beside the load."""
+"""Values for people: the nominal pressure beside the load, and the height of the arm where a sensor measures it."""
 
 from __future__ import annotations
 
@@ -36,3 +36,16 @@ def test_a_run_shows_the_pressure_of_the_load_that_is_on_the_arm(stated: str, kp
     load, pressure = found["load"], found["pressure"]
     assert (load.value, load.setpoint) == (20.0, 20.0)
     assert (pressure.value, pressure.setpoint) == (kpa, kpa) and pressure.quality == load.quality == "good"
+
+
+def test_the_height_of_the_arm_is_shown_with_its_interlocks_bounds() -> None:
+    rig = load_rig("pin-on-disc", ["interlocks.wear=1 mm", "interlocks.thickness=0.25 mm"])
+    height = next(value for value in unknown_values(quantities_on(rig), rig) if value.key == "height")
+    assert (height.low, height.high) == (-1.25, 0.25)
+    assert height.scale_low < -1.25 < 0.25 < height.scale_high
+
+
+def test_a_rig_without_a_sensor_of_the_height_does_not_show_it() -> None:
+    rig = load_rig("grosch")
+    assert "height" not in {value.key for value in unknown_values(quantities_on(rig), rig)}
+    assert "height_mm" in quantities_on(rig).names
