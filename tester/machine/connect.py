@@ -137,7 +137,7 @@ class Connector:
     """Runs the connection, tick by tick."""
 
     timeout_s: float = TIMEOUT_S
-    """Time limit for the connection; inf if a person takes part and needs the time."""
+    """Time limit for the connection; inf while a person takes part in it."""
 
     def __init__(self, devices: DeviceList, rig: Rig, arming: Arming[Any, Any], listen_s: float) -> None:
         """Send nothing before the first ``tick``, and nothing on the CAN bus before the listening period is over."""

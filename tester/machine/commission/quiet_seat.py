@@ -55,8 +55,6 @@ class QuietArming(Arming[Any, Any]):
 class QuietConnector(Connector):
     """Connects, waits for the devices, and stays there: no homing, no proof."""
 
-    timeout_s = inf
-
     def __init__(self, devices: DeviceList, rig: Rig, arming: QuietArming, listen_s: float) -> None:
         """Send nothing."""
         super().__init__(devices, rig, arming, listen_s)
@@ -67,6 +65,7 @@ class QuietConnector(Connector):
         return super().watches_drives and not (self._moving.provokes or self._moving.chain_may_open)
 
     def _lift(self, lifting: Any, now: float) -> None:
+        self.timeout_s = inf  # every device answers: a person takes the time that he or she needs
         lifting.step(now)
         if lifting.failure:
             self._fail(lifting.failure)
