@@ -42,9 +42,9 @@ class TrackPlant:
     __slots__ = (
         "_air", "_drift_n_k", "_dry", "_height_drift_mm_k", "_height_noise", "_height_zero_mm", "_law", "_noise",
         "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m", "_specimen", "_stick_slip", "_zero_n", "air_c",
-        "arm_n", "compound", "deaf", "force_n", "grip", "ground_m", "height_mm", "holder_mu", "hung_n", "interface",
-        "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "way_m", "weights_n",
-        "worn_mm",
+        "arm_n", "block_mm", "compound", "deaf", "force_n", "grip", "ground_m", "height_mm", "holder_mu", "hung_n",
+        "interface", "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "way_m",
+        "weights_n", "worn_mm",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -84,6 +84,8 @@ class TrackPlant:
         """Load of an arm that is not balanced, N, besides the weights."""
         self.hung_n = 0.0
         """Force of a weight that pulls the arm over a pulley, N, above 0 in the direction of the track."""
+        self.block_mm: float | None = None
+        """Gauge block on which the arm is held down, mm; None: the arm is where its lift is."""
         self.slid_m = 0.0
         self.way_m = 0.0
         """Way of the track."""
@@ -194,7 +196,8 @@ class TrackPlant:
         """Return the height of the arm, mm, at a position of its lift."""
         p, contact = self.parameters, self.parameters.contact
         carried_mm = lift_mm - contact.touch
-        if carried_mm >= 0.0:
+        block_mm = self.block_mm
+        if carried_mm >= 0.0 and block_mm is None:
             return carried_mm
         rests_mm = -contact.protrusion
         if self.holder_mu == IN_HOLDER and self.compound:
@@ -202,7 +205,7 @@ class TrackPlant:
             rests_mm = max(rests_mm, grown_mm - self.worn_mm)
         if p.motion == "disc":
             rests_mm += contact.runout * sin(1e3 * self.way_m / DISC_RADIUS_MM)
-        return rests_mm
+        return rests_mm if block_mm is None else rests_mm + block_mm
 
     def _rub(self, dt: float, track_m_s: float, law: FrictionLaw) -> None:
         """Extend the spring, or slide at the limit."""

@@ -237,6 +237,10 @@ class TrackRig(SimRig):
         """Let a weight pull the arm over a pulley, N, above 0 in the direction of the track; 0 takes it off."""
         self.plant.hung_n = force_n
 
+    def gauge(self, block_mm: float | None) -> None:
+        """Put the arm down by hand on a gauge block between specimen and track, mm; None: take the block away."""
+        self.plant.block_mm = block_mm
+
     def hold_switch(self, held: bool) -> None:
         """Hold an end switch by a finger, or let it go."""
         self.held_switch = held

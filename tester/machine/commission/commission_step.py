@@ -6,7 +6,8 @@ import hashlib
 import json
 from collections.abc import Callable, Generator, Mapping, Sequence
 from dataclasses import dataclass, field
-from math import inf
+from math import inf, isfinite, nan
+from statistics import fmean
 from typing import Any, Protocol
 
 from tester.base.config_reader import as_tree
@@ -73,6 +74,22 @@ def wait(seconds: float) -> Dialogue:
         return now_s >= until_s - 1e-9
 
     yield over
+
+
+def mean_of(reading: Callable[[], float], seconds: float) -> Generator[Waits, str, float]:
+    """Wait for some seconds of rig time; return the mean of the valid readings, NaN where there was none."""
+    values, until_s = list[float](), inf
+
+    def over(now_s: float) -> bool:
+        nonlocal until_s
+        until_s = min(until_s, now_s + seconds)
+        value = reading()
+        if isfinite(value):
+            values.append(value)
+        return now_s >= until_s - 1e-9
+
+    yield over
+    return fmean(values) if values else nan
 
 
 class Seat(Protocol):

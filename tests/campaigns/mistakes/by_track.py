@@ -15,8 +15,9 @@ from typing import Any, Final
 
 from sim.faults.sensors import SpoiledForces, SpoiledTemperature
 from sim.machines.specimen_on_track.rig import TrackRig
-from sim.nodes.sensor_slave import CellSlave, ForceSource, IrSlave
+from sim.nodes.sensor_slave import CellSlave, ForceSource, IrSlave, SensorSlave
 from tester.kinds.specimen_on_track.commission.commission_steps import STEPS
+from tester.kinds.specimen_on_track.commission.height import INCH_MM
 from tester.kinds.specimen_on_track.commission.twin import TrackPerson
 from tester.kinds.specimen_on_track.rig import TrackConfig
 from tester.machine.commission.scripted import words_of
@@ -156,6 +157,14 @@ def shift(radius_mm: float, world: TrackRig) -> None:
     world.radius_mm = radius_mm
 
 
+def show(scale: float, offset_mm: float, world: TrackRig) -> None:
+    """Let the sensor of the arm's height have another scale and zero."""
+    sensor = world.devices["height sensor"]
+    assert isinstance(sensor, SensorSlave)
+    plant = world.plant
+    sensor.show("height", lambda: scale * plant.height_measured() + offset_mm)
+
+
 class LeaseOff(TrackPerson):
     """Switches the chamber's lease off before it is tried."""
 
@@ -227,6 +236,18 @@ def _linear() -> list[Mistake]:
     ]  # fmt: skip
 
 
+SHOWN: Final = (
+    ("dead", "height sensor: it does not follow the arm", 0.0, 0.1),
+    ("reversed, out of its range", "not up after 90 s: height sensor", -1.0, 0.0),
+    ("reversed, on a lever", "height sensor: it falls when the arm rises", -0.3, 0.0),
+    ("in inches", "height sensor: .* inches for millimetres", 1.0 / INCH_MM, 0.0),
+    ("scale x 1.5", "height sensor: .* scale in its profile", 1.5, 0.0),
+    ("zero off by 0.4 mm", "height sensor: its zero is", 1.0, 0.4),
+    ("set with a thinner specimen", "height sensor: its zero is", 1.0, -0.4),
+)
+"""What is wrong with the sensor of the arm's height, how it is named, its scale, and its zero in mm."""
+
+
 def _disc() -> list[Mistake]:
     rig = believed(DISC)
     jog, air = partial(look, kind=DISC, steps=("jog track",)), partial(look, kind=DISC, steps=("air",))
@@ -242,6 +263,9 @@ def _disc() -> list[Mistake]:
                 partial(air, built=partial(warm, "thermometer", 4.0))),
         Mistake(f"{DISC}: pyrometer 5 K off", "thermometer offset: the pyrometer",
                 partial(air, built=partial(warm, "pyrometer", 5.0))),
+        *(Mistake(f"{DISC}: height sensor {name}", words,
+                  partial(look, kind=DISC, steps=("height",), built=partial(show, scale, offset_mm)))
+          for name, words, scale, offset_mm in SHOWN),
         Mistake(f"{DISC}: greasy track", "off what its model gives",
                 partial(look, kind=DISC, steps=("load", "first"), keys=("sim.rubbers.SBR.mu_max=0.7",))),
     ]  # fmt: skip

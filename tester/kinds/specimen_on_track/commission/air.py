@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-from collections import deque
-from collections.abc import Callable, Generator
-from math import inf, isfinite, nan
-from statistics import fmean
+from collections.abc import Callable
+from math import inf, nan
 from typing import Any, Final
 
 from drivers.temperature_controller import CHAMBER_RENEW_S
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.commission.seats import TrackSeat, jog_seat
 from tester.kinds.specimen_on_track.rig import TrackConfig
-from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, Waits, choose
+from tester.machine.commission.commission_step import Dialogue, Notes, StepRefused, choose, mean_of
 from tester.machine.commission.lease import LEASE_MORE_S, left_alone
 from tester.machine.commission.quiet_seat import JogSeat
 from tester.machine.commission.stages import in_stages, measured_twice
@@ -96,7 +94,7 @@ def _temper(seat: TrackSeat, notes: Notes) -> Dialogue:
 
 def _compare(notes: Notes, name: str, reading: Callable[[], float]) -> Dialogue:
     """Compare a temperature with what a second instrument shows."""
-    shown = yield from _mean(reading)
+    shown = yield from mean_of(reading, AVERAGE_S)
     where = "of the track at rest and cold, where the pyrometer looks" if name == "pyrometer" else "beside the specimen"
     text = f"{name}: the rig reads {shown:.1f} degC; what does a second thermometer show {where}?"
     read = yield from measured_twice(
@@ -112,22 +110,6 @@ def _compare(notes: Notes, name: str, reading: Callable[[], float]) -> Dialogue:
     notes.values[f"{name}_offset_k"] = offset
     notes.values[f"{name}_c"] = shown
     notes.text = "; ".join([*([notes.text] if notes.text else []), f"{name} {offset:+.2f} K off a second thermometer"])
-
-
-def _mean(reading: Callable[[], float]) -> Generator[Waits, str, float]:
-    """Return the mean of a temperature, degC."""
-    values, began_s = deque[float](), inf
-
-    def enough(now_s: float) -> bool:
-        nonlocal began_s
-        began_s = min(began_s, now_s)
-        value = reading()
-        if isfinite(value):
-            values.append(value)
-        return now_s - began_s >= AVERAGE_S and bool(values)
-
-    yield enough
-    return fmean(values)
 
 
 def _stand_by(seat: TrackSeat, notes: Notes) -> Dialogue:

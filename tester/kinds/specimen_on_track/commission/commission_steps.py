@@ -7,7 +7,7 @@ from functools import partial
 from typing import Final
 
 from sim.physics.track_bells import RUBBERS
-from tester.kinds.specimen_on_track.commission import air, first, force, load, travel, zero
+from tester.kinds.specimen_on_track.commission import air, first, force, height, load, travel, zero
 from tester.kinds.specimen_on_track.commission.axes_to_jog import LIFT, jog_track, track_axis
 from tester.kinds.specimen_on_track.commission.seats import TrackSeat, jog_seat
 from tester.kinds.specimen_on_track.commission.twin import TrackPerson
@@ -50,6 +50,9 @@ STEPS: Final = (
          partial(calibrate, force.PLAN), readings=of_cell),
     CommissionStep("load", "load by weighing the arm", ("weights", "arm"), ("identify",), jog_seat, load.weigh,
          readings=of_cell),
+    CommissionStep("height", "sensor of the arm's height by gauge blocks",
+         ("devices", "lines", "arm", "interlocks"), ("identify",), jog_seat, height.gauge,
+         readings=of_bus),
     CommissionStep("zero", "force with the arm raised while the track moves",
          ("axes", "limits", "track", "weights", *_CELL), ("jog track", "jog lift", "travel", "force"), TrackSeat,
          zero.zero, readings=of_armed(_FORCE, _TRACK)),

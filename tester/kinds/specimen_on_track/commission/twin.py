@@ -20,6 +20,13 @@ class TrackPerson(ScriptedPerson):
             self.hands.hang(float(words[2]) * (-1.0 if words[1] == "back" else 1.0))
         elif words[0] == "weigh":
             self.hands.put_on(float(words[1]))
+        elif words[0] == "block":
+            if not self.hands.mounted[1]:
+                self.hands.install(1, "SBR")
+            self.hands.put_on(0.0)
+            self.hands.gauge(float(words[1]))
+        elif words[0] == "keep":
+            self.hands.gauge(None)
         elif words[0] == "switch":
             self.hands.hold_switch(words[2] == "held")
 

@@ -15,7 +15,8 @@ from tests.campaigns.mistakes.by_track import DISC, GROSCH, MISTAKES, ON_WIRES, 
 from tests.campaigns.mistakes.mistake import Mistake
 from tests.tester.kinds.specimen_on_track.commission.track_twin import TrackTwin, believed
 
-QUICK = [one for one in MISTAKES if re.search("cell sign|not balanced|dead|another radius|lift reversed", one.name)]
+FEW = re.compile("cell sign|not balanced|dead|another radius|lift reversed|height sensor")
+QUICK = [one for one in MISTAKES if FEW.search(one.name)]
 
 
 @pytest.mark.parametrize("kind", [GROSCH, DISC])
@@ -27,6 +28,9 @@ def test_a_clean_rig_passes_every_step_on_the_wires_in_less_than_half_an_hour(tm
     force, zero = twin.record.last("force"), twin.record.last("zero")
     assert force is not None and all(abs(gain - 1.0) < 0.001 for gain in force.values["gains"].values())
     assert zero is not None and abs(zero.values["drag_n"]) < 0.02
+    height = twin.record.last("height")
+    assert height is not None
+    assert ("zero_mm" in height.values) is (kind == DISC)
 
 
 @pytest.mark.parametrize("mistake", QUICK, ids=lambda one: one.name)
