@@ -22,7 +22,7 @@ from tester.cli.main import invoke
 DOCS = Path(__file__).parents[1] / "docs"
 TUTORIAL = DOCS / "tutorial" / "your-first-recipe.md"
 TO_REPORT = DOCS / "tutorial" / "from-run-to-report.md"
-READING = DOCS / "explanation" / "how-a-reading-travels.md"
+READING = DOCS / "explanation" / "how-data-travel.md"
 KIND = DOCS / "how-to" / "add-a-kind-of-rig.md"
 PAPER = DOCS / "paper.md"
 SCRIPTING = DOCS / "how-to" / "script-against-the-service.md"
