@@ -57,7 +57,7 @@ async def draw(run: Path, folder: Path) -> list[Path]:
         app.action_seek(_moment(app.playback))
         for name, keys in KEYS.items():
             await pilot.press(*keys)
-            await _settle(app, pilot, name)
+            await settle(app, pilot, name)
             picture = FONTS.sub("", app.export_screenshot(title="friction-tester"))
             path = folder / f"{name}.svg"
             path.write_text(picture.replace("Fira Code, monospace", "Fira Code, DejaVu Sans Mono, monospace"), "utf-8")
@@ -81,7 +81,7 @@ def _moment(playback: Playback) -> float:
     return sliding[4 * len(sliding) // 5] if sliding else playback.length_s
 
 
-async def _settle(app: ReplayApp, pilot: Pilot[str], name: str) -> None:
+async def settle(app: ReplayApp, pilot: Pilot[str], name: str) -> None:
     """Let what is read in a thread arrive."""
     for _ in range(TRIES):
         await app.workers.wait_for_complete()
@@ -95,16 +95,19 @@ def short_run(out: Path) -> Path:
     """Carry out a run, leave a repeat out by hand, and return the run's folder."""
     recipe = out / "recipe.yaml"
     recipe.write_text(RECIPE, encoding="utf-8")
-    printed = io.StringIO()
-    with contextlib.redirect_stdout(printed):
-        code = invoke(
-            ["run", str(recipe), "--yes", "--seed", "1", "--set", "sim.scatter=0.3", "--out", str(out / "runs")]
-        )
-    if code not in (0, 6):
-        raise SystemExit(code)
-    run = Path(printed.getvalue().splitlines()[-1])
+    run = finished_run(out, str(recipe), "--set", "sim.scatter=0.3")
     record_word(run, EXCLUDED)
     return run
+
+
+def finished_run(out: Path, recipe: str, *options: str) -> Path:
+    """Carry out a recipe on the simulated rig and return the run's folder."""
+    printed = io.StringIO()
+    with contextlib.redirect_stdout(printed):
+        code = invoke(["run", recipe, "--yes", "--seed", "1", *options, "--out", str(out / "runs")])
+    if code not in (0, 6):
+        raise SystemExit(code)
+    return Path(printed.getvalue().splitlines()[-1])
 
 
 def main() -> None:
