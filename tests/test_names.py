@@ -24,6 +24,7 @@ KINDLESS = (
     "tester/analysis/fit",
     "tester/machine",
     "tester/inputs/recipe",
+    "tester/queue",
     "tester/report",
     "tester/service",
     "tester/store",
