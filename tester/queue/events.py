@@ -75,7 +75,9 @@ class ItemBegan:
 
 @dataclass(frozen=True, slots=True)
 class ItemReturned:
-    """The item's run did not begin: the item waits again at its place, and the queue stands."""
+    """The item's run did not begin: the item waits again at its place, and the queue stands; a skipped one stays
+    skipped, and the queue goes on.
+    """
 
     id: int
     reason: str

@@ -19,8 +19,8 @@ from tester.queue.events import (
     ItemSkipped,
     ItemTaken,
     QueueEvent,
-    QueueStarted,
     QueueLine,
+    QueueStarted,
 )
 from tester.queue.items import MAY_GO_ON, End, Hashes, ItemState, QueueItem
 
@@ -190,6 +190,8 @@ def _returned(queue: Queue, what: ItemReturned, utc: str) -> Queue:
         raise QueueError(f"item {what.id} is {_words(entry)}: it cannot go back")
     state = ItemState.SKIPPED if entry.skip else ItemState.WAITING
     queue = _with(queue, replace(entry, state=state, began_utc="", reason=what.reason))
+    if entry.skip:
+        return queue
     return replace(queue, going=False, why=f"item {what.id} did not begin: {what.reason}")
 
 

@@ -25,6 +25,7 @@ from websockets.exceptions import ConnectionClosed, InvalidHandshake
 from tester.base import clock
 from tester.base.screen import MachineView
 from tester.base.trouble import in_words
+from tester.queue.view import QueueView
 from tester.service.address import Address, AddressError, UnixAddress, default_address
 from tester.service.commands import Action, Attend, Command, Join, Stop
 from tester.service.protocol import (
@@ -38,6 +39,7 @@ from tester.service.protocol import (
     Hello,
     MachineMessage,
     PlanMessage,
+    QueueMessage,
     Refused,
     ServerMessage,
     Snapshot,
@@ -68,6 +70,8 @@ class LostError(Exception):
     """The connection has ended; the message gives the service's reason if it sent one."""
 
 
+Newest: TypeAlias = Hello | Snapshot | PlanMessage | QueueMessage | MachineMessage | Frames
+"""Messages of which only the newest counts."""
 Gone: TypeAlias = Literal["", "ended", "died"]
 """How the service ended: unknown, on request, or without a request."""
 
@@ -81,7 +85,7 @@ class Lost:
 
 
 class Client:
-    """One connection. ``state``, ``plan``, ``events`` and ``trend`` always hold the newest data."""
+    """One connection. ``state``, ``plan``, ``queue``, ``events`` and ``trend`` always hold the newest data."""
 
     def __init__(self, connection: ClientConnection, hello: Hello) -> None:
         """Use ``Client.connect`` instead."""
@@ -90,6 +94,7 @@ class Client:
         self.number = hello.client
         self.state: StateView = hello.state
         self.plan: PlanView | None = hello.plan
+        self.queue: QueueView | None = hello.queue
         self.events: deque[Event] = deque(hello.events, maxlen=EVENTS_KEPT)
         self.complete = hello.complete
         """Whether no event is missing between those seen before and ``events``."""
@@ -107,7 +112,7 @@ class Client:
         self._sending: set[asyncio.Task[None]] = set()
         self._answers: dict[int, asyncio.Future[Accepted]] = {}
         self._events_due: deque[Event] = deque()
-        self._newest: dict[type, Hello | Snapshot | PlanMessage | MachineMessage | Frames] = {Hello: hello}
+        self._newest: dict[type, Newest] = {Hello: hello}
         self._something = asyncio.Event()
         self._something.set()
         self._reading = asyncio.create_task(self._read())
@@ -238,6 +243,8 @@ class Client:
                 self.trend.append(message.row)
             elif isinstance(message, PlanMessage):
                 self.plan = message.plan
+            elif isinstance(message, QueueMessage):
+                self.queue = message.queue
             elif isinstance(message, MachineMessage):
                 self.machine = message.machine
                 self.trend.clear()

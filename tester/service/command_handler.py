@@ -10,12 +10,14 @@ from tester.service.commands import (
     Arm,
     Hold,
     Jog,
+    QueueOrder,
     Release,
     ResumeRun,
     RunRecipe,
     Stop,
     Tare,
 )
+from tester.service.queue_desk import QueueDesk
 from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
 
@@ -30,6 +32,8 @@ class Orders:
         self.armed_by = 0
         """Number of the client that armed manual mode."""
         self.ending = False
+        self.queue: QueueDesk | None = None
+        """The queue, once the service has one."""
         desk.obey, desk.stop, desk.lost_control = self.obey, self.stop, self.lost_control
 
     def obey(self, order: Order) -> None:
@@ -40,6 +44,11 @@ class Orders:
             self.desk.gateway.accept(order)
         elif isinstance(action, RunRecipe | ResumeRun):
             self._begin(order)
+        elif isinstance(action, QueueOrder):
+            if self.queue is None:
+                self.desk.gateway.refuse(order, "this service has no queue")
+            else:
+                self.queue.obey(order, action)
         elif isinstance(action, Arm):
             self._arm(order, action)
         elif isinstance(action, Acknowledge):
@@ -63,6 +72,8 @@ class Orders:
         desk = self.desk
         kind = "fast stop" if fast else "stop"
         desk.command(f"{kind} by {name}", "warning")
+        if self.queue is not None:
+            self.queue.stopped(f"{kind} by {name}")
         if desk.watch is not None:
             if desk.watch.run.engine.control.state.mode is Mode.LATCHED:
                 desk.watch.run.stays_latched = False  # its cause may never clear; the desk stays latched
@@ -70,6 +81,15 @@ class Orders:
             desk.stop_rest(fast)
         elif self.job is not None:
             desk.gateway.refuse(self.job, f"{kind} by {name}")
+            self.job = None
+
+    def skip(self, by: str) -> None:
+        """Stop the item of the queue that is under way in a controlled way; the queue itself goes on."""
+        watch = self.desk.watch
+        if watch is not None:
+            watch.run.request_stop(f"skipped by {by}")
+            self.desk.stop_rest(False)
+        elif self.job is not None:
             self.job = None
 
     def _hold(self, order: Order, action: Hold | Release) -> str:
@@ -137,13 +157,16 @@ class Orders:
 
     def _begin(self, order: Order) -> None:
         """Accept an order that begins work, if no work is under way."""
-        refusal = self._occupied()
+        refusal = self.occupied()
+        if not refusal and self.queue is not None and self.queue.going:
+            refusal = "the queue is going: let it stand first (`tester queue stand`)"
         if refusal:
             self.desk.gateway.refuse(order, refusal)
         else:
             self.job = order
 
-    def _occupied(self) -> str:
+    def occupied(self) -> str:
+        """Return why no work may begin; "" if it may."""
         desk = self.desk
         if self.ending:
             return "the service is ending"

@@ -206,11 +206,110 @@ class ListRuns(StrictMessage):
     command: Literal["runs"] = "runs"
 
 
-RigAction: TypeAlias = RunRecipe | ResumeRun | Hold | Release | Acknowledge | Stop | Answer | Arm | Jog | Tare
-"""Commands for the rig's owner; all but ``stop`` require control."""
+Revision = Annotated[int, Field(ge=0)]
+ItemNumber = Annotated[int, Field(ge=1)]
+Clock = Annotated[str, Field(pattern=r"^([01]?\d|2[0-3]):[0-5]\d$")]
+
+
+@dataclass(frozen=True, slots=True)
+class QueueAdd(StrictMessage):
+    """Add an item to the end of the queue, if it is valid on the service's rig. Result: ``{"id", "revision"}``.
+
+    Options as of ``run``; the recipe is frozen now. ``after``: ends after which the queue goes on.
+    """
+
+    recipe: PathText
+    text: RecipeText = ""
+    overrides: Annotated[tuple[Name, ...], Field(max_length=50)] = ()
+    seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
+    speed: Speed | None = 1.0
+    yes: bool = False
+    operator: Name = ""
+    notes: Note = ""
+    after: tuple[Literal["done", "short", "failed"], ...] = ("done", "short")
+    command: Literal["queue_add"] = "queue_add"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueMove(StrictMessage):
+    """Move an item before another one, or to the end (0); a skipped item waits again. ``revision``: of the queue that
+    the sender saw; refused if it has changed since.
+    """
+
+    id: ItemNumber
+    revision: Revision
+    before: Annotated[int, Field(ge=0)] = 0
+    command: Literal["queue_move"] = "queue_move"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueSkip(StrictMessage):
+    """Pass over a waiting item, or stop the item under way in a controlled way and let the queue go on. ``revision`` as
+    of ``queue_move``.
+    """
+
+    id: ItemNumber
+    revision: Revision
+    command: Literal["queue_skip"] = "queue_skip"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueDrop(StrictMessage):
+    """Remove an item that does not run. ``revision`` as of ``queue_move``."""
+
+    id: ItemNumber
+    revision: Revision
+    command: Literal["queue_drop"] = "queue_drop"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueStart(StrictMessage):
+    """Start the queue. ``agree``: items that run although something has changed since they were added."""
+
+    agree: Annotated[tuple[ItemNumber, ...], Field(max_length=200)] = ()
+    command: Literal["queue_start"] = "queue_start"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueStand(StrictMessage):
+    """Let the queue begin no further item; the item under way goes on."""
+
+    reason: Note = ""
+    command: Literal["queue_stand"] = "queue_stand"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueList(StrictMessage):
+    """Return the queue as in the message ``queue``."""
+
+    command: Literal["queue_list"] = "queue_list"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueCheck(StrictMessage):
+    """Return until when the queue runs alone between two times of day of the service, such as 18:00 and 08:00, when it
+    needs a person, and an order that would run longer.
+    """
+
+    start: Clock
+    end: Clock
+    command: Literal["queue_check"] = "queue_check"
+
+
+QueueEdit: TypeAlias = QueueAdd | QueueMove | QueueDrop | QueueStand
+"""Changes of the queue that begin nothing; they need no control."""
+QueueOrder: TypeAlias = QueueEdit | QueueSkip | QueueStart
+RigAction: TypeAlias = (
+    RunRecipe | ResumeRun | Hold | Release | Acknowledge | Stop | Answer | Arm | Jog | Tare | QueueOrder
+)
+"""Commands for the rig's owner; all but ``stop`` and changes of the queue require control."""
+QueueQuery: TypeAlias = QueueList | QueueCheck
+"""Questions that the gateway answers from the newest queue."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns
 """Questions that a separate process answers, without involving the rig."""
-Action: TypeAlias = Annotated[RigAction | TakeControl | WatchFrames | Attend | Query, Field(discriminator="command")]
+Action: TypeAlias = Annotated[
+    RigAction | TakeControl | WatchFrames | Attend | Query | QueueQuery, Field(discriminator="command")
+]
 
 
 @dataclass(frozen=True, slots=True)

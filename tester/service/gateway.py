@@ -29,6 +29,8 @@ from tester.service.commands import (
     ListRecipes,
     ListRuns,
     Query,
+    QueueEdit,
+    QueueQuery,
     RigAction,
     ShowPlan,
     Stop,
@@ -52,6 +54,7 @@ from tester.service.protocol import (
     to_server,
 )
 from tester.service.queries import Queries, QueryError
+from tester.service.queue_answers import QueueAnswers
 from tester.service.service_link import GatewayEnd, Order
 
 EVENTS_AT_FIRST = 200
@@ -90,10 +93,10 @@ class Gateway:
         self.queries = queries
         self.hook = hook
         self.guests = Guests(self.owner)
-        self._ended = False
-        self._next = 1
+        self._ended, self._next = False, 1
         self._state = b""
         self._plan = b"null"
+        self.queue = QueueAnswers()
         self._machine = to_json(UNKNOWN)
         """Tables of the kind of rig; the owner sends them before its first state."""
         self._events: deque[tuple[int, bytes]] = deque(maxlen=EVENTS_KEPT)
@@ -123,6 +126,10 @@ class Gateway:
             self._plan = rest
             for guest in self.guests.values():
                 guest.outbox.newest("plan", b'{"plan":' + rest + b',"type":"plan"}')
+        elif kind == b"q":
+            self.queue.encoded = rest
+            for guest in self.guests.values():
+                guest.outbox.newest("queue", b'{"queue":' + rest + b',"type":"queue"}')
         elif kind == b"m":
             self._take_machine(rest)
         elif kind == b"a":
@@ -245,7 +252,7 @@ class Gateway:
                 b'"control":' + (b"true" if self.guests.controller == guest.number else b"false"),
                 b',"machine":' + self._machine + b',"state":' + self._state + b',"plan":' + self._plan,
                 b',"events":[' + b",".join(sent) + b'],"complete":' + (b"true" if complete else b"false"),
-                b',"trend":[' + b",".join(self._rows) + b'],"type":"hello"}',
+                b',"trend":[' + b",".join(self._rows) + b'],"queue":' + self.queue.encoded + b',"type":"hello"}',
             )
         )
 
@@ -304,14 +311,16 @@ class Gateway:
         elif isinstance(action, Attend):
             self.guests.sign(guest)
             self._answer(guest, message.id)
+        elif isinstance(action, QueueQuery):
+            self._reply(guest, self.queue.reply(message.id, action))
         elif isinstance(action, CheckRecipe | ShowPlan | ListRecipes | ListRuns):
             self._ask(guest, message.id, action)
         else:
             self._order(guest, message.id, action)
 
     def _order(self, guest: Guest, number: int, action: RigAction) -> None:
-        """Forward a command to the rig's owner if this client may send it. Every client may send STOP."""
-        if not isinstance(action, Stop) and (refusal := self.guests.refusal(guest)):
+        """Forward a command to the rig's owner if this client may send it. All may send STOP and edit the queue."""
+        if not isinstance(action, Stop | QueueEdit) and (refusal := self.guests.refusal(guest)):
             self._answer(guest, number, refusal)
             return
         self.guests.forget_mode()

@@ -19,6 +19,7 @@ from pydantic_core import to_json
 from tester import __version__
 from tester.base import clock
 from tester.base.screen import MachineView
+from tester.queue.view import QueueView
 from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
 from tester.service.child_process import spawn
 from tester.service.gateway_process import SETTINGS, GatewaySettings
@@ -63,6 +64,7 @@ class GatewayLink:
     _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
     _rows: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=TREND_ROWS))
     _plan: bytes = b"pnull"
+    _queue: bytes = b""
     _machine: bytes = b""
     _again_s: float = float("-inf")
 
@@ -124,6 +126,11 @@ class GatewayLink:
         """Send the plan."""
         self._plan = b"p" + to_json(plan, inf_nan_mode="null")
         self._send(self._plan)
+
+    def queue(self, queue: QueueView) -> None:
+        """Send the queue."""
+        self._queue = b"q" + to_json(queue)
+        self._send(self._queue)
 
     def frames(self, frames: Frames) -> None:
         """Send frames to the clients that watch them."""
@@ -206,6 +213,8 @@ class GatewayLink:
         for event in self._events:
             self._send(event)
         self._send(self._plan)
+        if self._queue:
+            self._send(self._queue)
 
     def close(self) -> None:
         """End the gateway, which sends a goodbye to every client. STOP works until the gateway has ended."""

@@ -1,7 +1,7 @@
 """The messages between the service and its clients: JSON objects, one in each WebSocket message (docs/protocol.md).
 
 A client sends ``join`` first and receives ``hello``. From then on the service sends ``snapshot`` (four a second, only
-the newest counts), ``plan`` (only the newest counts), ``event`` (numbered, never dropped), ``machine`` when a run uses
+the newest counts), ``plan`` and ``queue`` (likewise), ``event`` (numbered, never dropped), ``machine`` when a run uses
 another kind of rig and, to a client that watches them, ``frames``. Each command is answered by ``accepted`` or
 ``refused``. ``goodbye`` gives the reason why the service closes the connection.
 """
@@ -15,6 +15,7 @@ from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 from pydantic_core import from_json
 
 from tester.base.screen import MachineView
+from tester.queue.view import QueueView
 from tester.service.commands import VERSION, ClientMessage, Command, Join, Stop
 from tester.service.state_view import PlanView, StateView
 
@@ -51,7 +52,7 @@ class Hello:
     ``service`` identifies this instance of the service: ``since`` counts only within it. ``events``: those after
     ``since``, or the last 200; ``complete`` is False when some of them are no longer kept. ``client``: this client's
     number; ``control``: whether it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows of
-    its columns, oldest first; None is a missing value.
+    its columns, oldest first; None is a missing value. ``queue``: the queue of the rig.
     """
 
     version: int
@@ -65,6 +66,7 @@ class Hello:
     events: tuple[Event, ...]
     complete: bool
     trend: tuple[tuple[float | None, ...], ...]
+    queue: QueueView | None = None
     type: Literal["hello"] = "hello"
 
 
@@ -94,6 +96,16 @@ class PlanMessage:
 
     plan: PlanView | None
     type: Literal["plan"] = "plan"
+
+
+@dataclass(frozen=True, slots=True)
+class QueueMessage:
+    """The queue of the rig: after every change, and every ten seconds while it goes; a slow client receives only the
+    newest.
+    """
+
+    queue: QueueView
+    type: Literal["queue"] = "queue"
 
 
 @dataclass(frozen=True, slots=True)
@@ -146,7 +158,7 @@ class Goodbye:
 
 
 ServerMessage: TypeAlias = Annotated[
-    Hello | Snapshot | Event | PlanMessage | MachineMessage | Frames | Accepted | Refused | Goodbye,
+    Hello | Snapshot | Event | PlanMessage | QueueMessage | MachineMessage | Frames | Accepted | Refused | Goodbye,
     Field(discriminator="type"),
 ]
 

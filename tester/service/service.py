@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import signal
 import sqlite3
-from collections.abc import Callable, Iterator
-from contextlib import closing, suppress
+from collections.abc import Callable
+from contextlib import closing
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from pathlib import Path
@@ -22,6 +22,8 @@ from tester.base.trouble import in_words
 from tester.machine.manual import NAME, ManualExecutor
 from tester.machine.run import Outcome, Run
 from tester.machine.tickers import TickedWorld, TickStatistics, collector_at_rest, run_real_time, run_simulated
+from tester.queue.items import QueueItem
+from tester.queue.recover import end_of
 from tester.run.endings import CannotStartError
 from tester.run.folder import part_time
 from tester.run.kind_lookup import load_rig, run_parts
@@ -36,24 +38,22 @@ from tester.service.commands import (
     RunRecipe,
 )
 from tester.service.gateway_link import GatewayLink
+from tester.service.interrupted import interrupted_runs, is_interrupted
 from tester.service.preflight import left_on_rig, past_of
-from tester.service.running import RunScreen, ServiceSession, aside, open_record
+from tester.service.queue_desk import QueueDesk, QueueRig
+from tester.service.running import LOOK_S, RunScreen, ServiceSession, aside, open_record
 from tester.service.service_link import Order
-from tester.service.state_publisher import Desk
+from tester.service.state_publisher import Desk, do_nothing
 from tester.service.state_view import RunView
 from tester.service.values import PlanTrack
-from tester.store.record_file import DATABASE
 from tester.store.record_schema import StoreError
-from tester.store.run_folders import RunStatus, find_run, run_status, under_way
-from tester.store.run_reader import RunReader
+from tester.store.run_folders import RunStatus, find_run, run_status
 from tester.store.writer import RunWriter
 
 Got = TypeVar("Got")
 
 RECIPES = ".recipes"
 """Folder, in that of the runs, for recipes sent as text; a file's name is the hash of its content."""
-NEWEST_RUNS = 200
-"""Number of newest runs in which to search for interrupted ones."""
 LOOK_EVERY_S = 10.0
 """Period at which the idle service checks the interrupted runs, s."""
 SILENT_S = 1.0
@@ -86,6 +86,8 @@ class Service:
         self.rig = load_rig(options.rig, options.overrides, options.accept_risk)
         self.desk = Desk(gateway, self.rig, options.runs)
         self.orders = Orders(self.desk)
+        rig = QueueRig(options.rig, options.overrides, options.accept_risk, options.runs)
+        self.queue = self.orders.queue = QueueDesk(self.desk, rig, self.orders.skip, self._busy)
         self._look_due_s = 0.0
 
     # -- the loop ---------------------------------------------------------------------------------------------
@@ -96,6 +98,8 @@ class Service:
         asking = (signal.SIGINT, signal.SIGTERM, QUIT)
         with caught(lambda _number, _frame: self.end(), asking, (HANG_UP, *SUSPENDING)):
             desk.latch_again()  # before the first order
+            self.queue.open()
+            desk.look = self.queue.look
             desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
             self._look_back()
             for name in desk.interrupted:
@@ -107,10 +111,13 @@ class Service:
                     self.orders.job = None
                     self._look_back()
                     self._look_again()
+                elif (item := self.queue.due()) is not None:
+                    self._run_item(item)
                 else:
                     desk.wait()
                     if clock.monotonic() >= self._look_due_s:
                         self._look_again()
+        self.queue.close()
         desk.tell("service", "the service ends")
         desk.show()
 
@@ -163,6 +170,47 @@ class Service:
         )
         self._session(order, options, action.yes, action.notes, lambda session: session.run())
 
+    def _run_item(self, item: QueueItem) -> None:
+        """Run an item of the queue to its end, on record before it begins and after."""
+        desk, queue = self.desk, self.queue
+        by = f"the queue, item {item.id} of {item.by}"
+        order = self.orders.job = Order(0, by, 0, RunRecipe(item.name, yes=item.yes))
+        refused: list[str] = []
+        queue.taken(item, refused.append)
+        self._settled()
+        if refused[0]:
+            self.orders.job = None
+            return
+        desk.run = None
+        options = SessionOptions(
+            queue.recipe(item), self.options.rig, (*self.options.overrides, *item.overrides), self.options.accept_risk,
+            self.options.runs, item.seed, item.speed, operator=item.operator or item.by,
+        )  # fmt: skip
+        notes = "; ".join(text for text in (item.notes, f"item {item.id} of the queue, added by {item.by}") if text)
+        view, problem = self._session(
+            order, options, item.yes, notes, lambda session: session.run(), lambda run: queue.began(item, run)
+        )
+        self.orders.job = None
+        if view is None:
+            queue.returned(item, problem)
+        else:
+            self._look_back()
+            unknown = desk.past is None or not desk.past.left.known
+            end = end_of(RunStatus(view.outcome))
+            queue.ended(item, end, view.reason, view.name, stands=bool(desk.latched) or unknown)
+        self._settled()
+        self._look_again()
+
+    def _settled(self) -> None:
+        """Serve clients until the queue's changes are on the disk."""
+        while self.queue.unsettled:
+            self.desk.poll(0.0)
+            clock.sleep_until(clock.monotonic() + LOOK_S)
+
+    def _busy(self) -> str:
+        """Return why no item of the queue may begin; "" if it may."""
+        return self.orders.occupied()
+
     def _resume(self, order: Order, action: ResumeRun) -> None:
         try:
             folder = find_run(action.run, self.options.runs)
@@ -185,20 +233,25 @@ class Service:
         return str(file)
 
     def _session(
-        self, order: Order, options: SessionOptions, yes: bool, notes: str, work: Callable[[ServiceSession], int]
-    ) -> None:
-        """Run a session to its end, including its tables."""
+        self, order: Order, options: SessionOptions, yes: bool, notes: str, work: Callable[[ServiceSession], int],
+        told: Callable[[str], None] = do_nothing,
+    ) -> tuple[RunView | None, str]:  # fmt: skip
+        """Run a session to its end, including its tables. Return the run's last view, None if it did not begin, and the
+        problem. ``told`` receives the run's name when it begins.
+        """
         desk = self.desk
         view = RunView("", "", "", "", "", options.operator, options.seed, self.rig.simulated, options.lapse, "",
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
 
         def begun(view: RunView) -> None:
+            told(view.name)
             desk.gateway.accept(order, {"run": view.name, "folder": view.folder})
             desk.command(f"{order.action.command} by {order.by}")
             if notes and desk.watch is not None:
                 desk.watch.run.engine.ctx.journal.event(0.0, "note", notes)
 
         screen = RunScreen(desk, view, answer_yes=yes)
+
         def meanwhile() -> str:
             desk.poll(0.0 if desk.watch is None else desk.now_s)
             if self.orders.ending:
@@ -212,15 +265,18 @@ class Service:
         except REFUSED as error:
             problem = in_words(error)
         if not session.view.name:
+            problem = problem or "; ".join(screen.messages) or "the run has ended before it began"
             if self.orders.job is order:  # otherwise STOP has already refused it
-                desk.gateway.refuse(order, problem or "; ".join(screen.messages) or "the run has ended before it began")
+                desk.gateway.refuse(order, problem)
             desk.detach(None)
-            return
+            return None, problem
         outcome = session.ending.outcome if session.ending is not None else Outcome.FAILED
         reason = problem or (session.ending.reason if session.ending is not None else "")
         known, missing = desk.run or session.view, tuple(screen.missing)
         status = run_status(outcome.value, held=False, missing=bool(missing))
-        desk.ended(replace(known, outcome=status.value, reason=reason, exit=code, missing=missing), outcome)
+        last = replace(known, outcome=status.value, reason=reason, exit=code, missing=missing)
+        desk.ended(last, outcome)
+        return last, problem
 
     def _manual(self, order: Order) -> None:
         """Connect the rig, and let the client that armed manual mode move it."""
@@ -286,20 +342,3 @@ class Service:
         if world is not None:
             return run_simulated(run, world, lapse=MANUAL_LAPSE, poll=poll)
         return run_real_time(run, None, poll=poll, statistics=TickStatistics(), pace=pace)
-
-
-def interrupted_runs(runs: Path) -> Iterator[str]:
-    """Yield the names of interrupted runs in a folder: runs without an end, at which no process works."""
-    folders = sorted(runs.iterdir(), reverse=True)[:NEWEST_RUNS] if runs.is_dir() else []
-    for folder in reversed(folders):
-        if is_interrupted(folder):
-            yield folder.name
-
-
-def is_interrupted(folder: Path) -> bool:
-    """Return whether a folder holds an interrupted run."""
-    if not (folder / DATABASE).is_file() or under_way(folder) is not None:
-        return False
-    with suppress(StoreError), RunReader(folder) as reader:
-        return run_status(reader.run().status, held=False, missing=False) is RunStatus.INTERRUPTED
-    return False

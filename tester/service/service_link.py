@@ -5,6 +5,7 @@ The owner's side never waits. Each of its lines is a letter, then JSON; the gate
     s STATE \t ROW    the state and its row of the trend; only the newest counts
     m MACHINE         the tables of the kind of rig, before the first state, and when a run uses another kind
     p PLAN            the plan, or null
+    q QUEUE           the queue
     e SEQ EVENT       an event message
     a CLIENT REPLY    the answer to a client's command
     f FRAMES          a frames message

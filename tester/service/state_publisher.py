@@ -26,13 +26,13 @@ from tester.service.protocol import SNAPSHOT_S
 from tester.service.service_link import Order
 from tester.service.state_view import ManualView, ProgressView, RunView, StateView, TickView
 from tester.service.values import PlanTrack, trend_row, unknown_values, with_pressure
-from tester.service.watch import RunWatch, risk_of
+from tester.service.watch import LastSeen, RunWatch, risk_of
 from tester.store.record_schema import StoreError
 
 UNWATCHED_S = 1.0
 """Period of states while no client is connected, s: the trend continues at a rate that costs almost nothing."""
 SOONEST_S = 0.05
-"""Shortest time between two states, s, so that clients cannot raise the rate by sending many commands."""
+"""Shortest time between two states, s, however many commands clients send."""
 NOTIFIED = frozenset({"trip"})
 """Kinds of events that run the notify hook. Other code reports hold, prompt, finished and disk."""
 
@@ -44,9 +44,7 @@ def do_nothing(*_: object) -> None:
 @dataclass(slots=True)
 class Desk:
     """The present state of rig and run. ``obey`` receives every order; ``lost_control`` is called when the controller
-    changes.
-
-    ``watch`` reads the run under way.
+    changes, ``look`` at every poll. ``watch`` reads the run under way.
     """
 
     gateway: GatewayLink
@@ -54,11 +52,13 @@ class Desk:
     runs: Path
     obey: Callable[[Order], None] = field(default=do_nothing)
     stop: Callable[[str, bool], None] = field(default=do_nothing)
-    """Called on STOP with the client's name and whether the stop is fast."""
+    """Called on STOP: the client's name, whether it is fast."""
     lost_control: Callable[[], None] = field(default=do_nothing)
+    look: Callable[[], None] = field(default=do_nothing)
     stop_rest: Callable[[bool], None] = field(default=do_nothing)
-    """Called on STOP (with whether it is fast) to stop the parts of the run that have not begun."""
+    """Called on STOP (whether fast) to stop the parts of the run that have not begun."""
     watch: RunWatch | None = None
+    seen: LastSeen | None = None
     hand: ManualExecutor | None = None
     run: RunView | None = None
     tick: TickView = field(default_factory=lambda: TickView(0.0, 0.0, 0))
@@ -68,7 +68,7 @@ class Desk:
     """Name of the alarm of the trip that blocks starts."""
     interrupted: tuple[str, ...] = ()
     past: Past | None = None
-    """The outcome of the newest stored run and the specimen that it left; read while no run ticks."""
+    """The outcome of the newest stored run, and what it left; read while no run ticks."""
     history: History | None = None
     """What stored runs show about the rig; read at the same time as ``past``."""
     needed: int = 0
@@ -111,8 +111,7 @@ class Desk:
         run.engine.ctx.journal.on_event = self.forward
         self.gateway.lane.begin_ticking()
         self.now_s = 0.0
-        self._asked = 0
-        self._revision = 0
+        self._asked = self._revision = 0
         if hand is not None:
             self.gateway.plan(None)
         else:
@@ -146,6 +145,7 @@ class Desk:
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
         self.notify("finished", text)
         watch = self.watch
+        self.seen = watch.seen() if watch else None
         if watch is not None and not watch.acknowledged and (outcome is Outcome.TRIPPED or watch.latched):
             self._latch(view.reason or view.outcome, watch)
         self.detach(view)
@@ -212,7 +212,8 @@ class Desk:
         for message in self.gateway.receive():
             if isinstance(message, Order):
                 self.obey(message)
-            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # show the change without waiting for the period
+            self._due_s = min(self._due_s, self._shown_s + SOONEST_S)  # show the change soon
+        self.look()
         self._notice_control()
         wall_s = clock.monotonic()
         if wall_s >= self._due_s:
@@ -338,9 +339,8 @@ class Desk:
         return ManualView(None, "") if hand is None else ManualView(hand.left_s(self.now_s), hand.hand.tare_text)
 
     def _tick_view(self) -> TickView:
-        if self.watch is None:
-            return TickView(0.0, 0.0, 0)
-        return replace(self.tick, rate_hz=round(1.0 / self.watch.run.engine.period_s, 1))
+        watch, still = self.watch, TickView(0.0, 0.0, 0)
+        return still if watch is None else replace(self.tick, rate_hz=round(1.0 / watch.run.engine.period_s, 1))
 
     def _row(self, view: StateView) -> tuple[float | None, ...]:
         by_key = {value.key: value for value in view.values}

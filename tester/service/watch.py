@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from math import isfinite
 from typing import Any
@@ -17,6 +17,7 @@ from tester.inputs.rig.further_sensors import quantities_on
 from tester.inputs.rig.rig_files import risks_of
 from tester.machine.connect import Stage
 from tester.machine.engine import Engine
+from tester.machine.panel import RunPanel
 from tester.machine.run import Run
 from tester.machine.served import ServedKind
 from tester.machine.state import ControlState, Mode
@@ -79,6 +80,15 @@ class FrameLog:
         self._frames.append((t + self._engine.leapt_s, line, sent, data[0] if data else 0, data))
 
 
+@dataclass(frozen=True, slots=True)
+class LastSeen:
+    """The last scan of a run: when (tester.base.clock.monotonic), the mode, the safety inputs."""
+
+    at_s: float
+    mode: str
+    checks: tuple[Check, ...]
+
+
 NO_MODE = "CONNECTING"
 MODES = {Mode.EMERGENCY: "E-STOP"}
 """Modes shown under a name other than control's."""
@@ -134,6 +144,10 @@ class RunWatch:
         name = MODES.get(state.mode, state.mode.value.upper())
         why = state.trip.text if state.trip is not None else state.stop_requested
         return name, why, max(run.engine.ctx.now - state.mode_since_s, 0.0)
+
+    def seen(self) -> LastSeen:
+        """Return what the last scan showed; call it when the run has just ended."""
+        return LastSeen(clock.monotonic(), self.mode[0], RunPanel.checks(self.panel))
 
     @property
     def latched(self) -> bool:

@@ -9,7 +9,7 @@ from tester.base.screen import Check
 from tester.queue.decide import NEEDED, Evidence
 from tester.queue.events import QueueEvent, QueueLine
 from tester.queue.fold import Queue, applied
-from tester.queue.items import GO_ON, PersonAsk, End, Hashes, Needs, QueueItem
+from tester.queue.items import GO_ON, End, Hashes, Needs, PersonAsk, QueueItem
 
 UTC = "2024-02-21T18:00:00.000Z"
 HASHES = Hashes("aa", "bb", (("compound 1#", "cc"),))

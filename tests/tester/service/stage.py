@@ -12,12 +12,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 from pathlib import Path
+from typing import ClassVar
 
 import pytest
 from pydantic import JsonValue
 
 from recipes import UnknownRecipe
 from tester.base.source import InvalidSource
+from tester.queue.assess import Assessment, AssessTask, assess
+from tester.queue.view import QueueView
 from tester.run.endings import CannotStartError
 from tester.run.preconditions import Prepared, prepared
 from tester.service.address import UnixAddress
@@ -42,6 +45,7 @@ class Stage(GatewayLink):
         self.events: list[Event] = []
         self.views: list[StateView] = []
         self.plans: list[PlanView | None] = []
+        self.queues: list[QueueView] = []
         self.told_frames: list[Frames] = []
         self.accepted: dict[str, JsonValue] = {}
         self.refused: dict[str, str] = {}
@@ -87,6 +91,9 @@ class Stage(GatewayLink):
     def plan(self, plan: PlanView | None) -> None:
         self.plans.append(plan)
 
+    def queue(self, queue: QueueView) -> None:
+        self.queues.append(queue)
+
     def frames(self, frames: Frames) -> None:
         self.told_frames.append(frames)
 
@@ -127,11 +134,37 @@ def planned_here(task: Task, meanwhile: Callable[[], str]) -> Prepared:
         raise CannotStartError(str(error)) from error
 
 
+class AssessedHere:
+    """Looks at items in this process, at the next poll: another process for every look takes longer than the test."""
+
+    looked: ClassVar[list[AssessTask]] = []
+
+    def __init__(self) -> None:
+        self._task: AssessTask | None = None
+
+    @property
+    def busy(self) -> bool:
+        return self._task is not None
+
+    def begin(self, task: AssessTask) -> None:
+        self._task = task
+        self.looked.append(task)
+
+    def poll(self) -> Assessment | None:
+        assert self._task is not None
+        task, self._task = self._task, None
+        return assess(task)
+
+    def end(self) -> None:
+        self._task = None
+
+
 def play(folder: Path, script: Callable[[Stage], Script], *overrides: str, rig: str = "sim") -> Stage:
     """Let a service live until the script has ended; return what was said."""
     stage = Stage(folder, script)
     stage.service = Service(ServiceOptions(rig, overrides, folder / "runs"), stage)
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr("tester.service.running.planned", planned_here)
+        patch.setattr(stage.service.queue, "_assessor", AssessedHere())
         stage.service.serve()
     return stage

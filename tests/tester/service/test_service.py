@@ -26,7 +26,7 @@ from tester.service.commands import (
     Stop,
     Tare,
 )
-from tester.service.service import interrupted_runs
+from tester.service.interrupted import interrupted_runs
 from tester.service.service_link import Presence
 from tester.service.state_view import StateView
 from tester.store.run_reader import RunReader

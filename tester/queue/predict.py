@@ -1,0 +1,78 @@
+"""When items begin and end: sums of their estimates, with an interval from the spread that each estimate states."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from math import hypot
+from typing import Final
+
+from tester.queue.fold import Queue
+from tester.queue.items import ItemState, Needs
+
+BETWEEN_S: Final = 3.0
+"""Time between two items for evidence, planning and connecting, s [A]: two processes start and plan."""
+
+
+@dataclass(frozen=True, slots=True)
+class PlannedItem:
+    """An item's part of a prediction: its needs, and of the item under way only what is left.
+
+    ``left_s``: seconds to its end, None for an item that has not begun.
+    """
+
+    id: int
+    needs: Needs
+    left_s: float | None = None
+
+    @property
+    def seconds(self) -> float:
+        """Expected duration from now or from its start, s."""
+        return self.needs.seconds if self.left_s is None else self.left_s
+
+    @property
+    def share(self) -> float:
+        """Share of the item that is left, 0..1."""
+        if self.left_s is None or self.needs.seconds <= 0.0:
+            return 1.0
+        return min(max(self.left_s / self.needs.seconds, 0.0), 1.0)
+
+
+@dataclass(frozen=True, slots=True)
+class Times:
+    """When an item begins and ends, s from the prediction; 95 % of queues end it between ``low_s`` and ``high_s``."""
+
+    id: int
+    start_s: float
+    end_s: float
+    low_s: float
+    high_s: float
+
+
+def planned(queue: Queue, left_s: float | None = None) -> list[PlannedItem]:
+    """Return the items that will run, in order. ``left_s``: seconds to the end of the item under way, None if unknown:
+    then its whole estimate counts.
+    """
+    items: list[PlannedItem] = []
+    for entry in queue.listed:
+        if entry.state is not ItemState.SKIPPED:
+            under_way = entry.state.under_way and left_s is not None
+            items.append(PlannedItem(entry.item.id, entry.item.needs, left_s if under_way else None))
+    return items
+
+
+def predicted(items: Sequence[PlannedItem]) -> list[Times]:
+    """Return the times of items that run one after another.
+
+    The deviations of different items are independent, so their half ranges add up as squares; those of one item are
+    as its estimate states.
+    """
+    at_s, sooner_s, later_s = 0.0, 0.0, 0.0
+    times: list[Times] = []
+    for item in items:
+        start_s = at_s + (BETWEEN_S if item.left_s is None and times else 0.0)
+        at_s = start_s + item.seconds
+        sooner_s = hypot(sooner_s, item.share * (item.needs.seconds - item.needs.low_s))
+        later_s = hypot(later_s, item.share * (item.needs.high_s - item.needs.seconds))
+        times.append(Times(item.id, start_s, at_s, max(at_s - sooner_s, start_s), at_s + later_s))
+    return times
