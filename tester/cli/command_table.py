@@ -40,6 +40,20 @@ RESULTS = CommandGroup(
         "slip-ring": CommandEntry("results_group", "slip_ring", "Analyse the slip ring's errors."),
     },
 )
+QUEUE = CommandGroup(
+    "Recipes that run one after another: add, list, start.",
+    {
+        "add": CommandEntry("queue_group", "add", "Check a recipe and add it to the queue."),
+        "list": CommandEntry("queue_group", "list_", "List the items and what the queue waits for."),
+        "move": CommandEntry("queue_group", "move", "Move an item."),
+        "skip": CommandEntry("queue_group", "skip", "Pass over an item, also the one that runs."),
+        "drop": CommandEntry("queue_group", "drop", "Remove an item."),
+        "start": CommandEntry("queue_group", "start", "Start the queue."),
+        "stand": CommandEntry("queue_group", "stand", "Begin no further item."),
+        "check": CommandEntry("queue_group", "check", "Until when the queue runs alone."),
+        "key": CommandEntry("queue_group", "key", "Make or revoke a key for the queue's calendar."),
+    },
+)
 SECTIONS: Mapping[str, Mapping[str, Listed]] = {
     "Try without a rig": {
         "new": CommandEntry("new_command", "new", "Write a recipe by answering five questions."),
@@ -51,6 +65,7 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
     "Test": {
         "run": CommandEntry("run_command", "run", "Run a recipe on a rig, by default the simulated one."),
         "resume": CommandEntry("run_command", "resume", "Resume an interrupted run."),
+        "queue": QUEUE,
         "tui": CommandEntry("tui_command", "tui", "Open the operator's screen."),
     },
     "Look at runs": {

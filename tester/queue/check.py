@@ -166,7 +166,7 @@ def _better(
     behind = items[MOST_ORDERED:]
     for _ in range(MOST_ROUNDS):
         found: tuple[float, list[ItemView], tuple[int, int]] | None = None
-        for item in order:
+        for item in reversed(order):
             if item.state is not ItemState.WAITING:
                 continue
             rest = [other for other in order if other.id != item.id]

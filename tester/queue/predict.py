@@ -12,6 +12,9 @@ from tester.queue.items import ItemState, Needs
 
 BETWEEN_S: Final = 3.0
 """Time between two items for evidence, planning and connecting, s [A]: two processes start and plan."""
+SKEW: Final = 0.2
+"""The mean of runs is above the estimate by this share of the difference between the upper and the lower half of its
+range. On the simulated rig 40 runs of `quickstart` have 0.17, 19 of three angles 0.14 (both +-0.1)."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,16 +29,23 @@ class PlannedItem:
     left_s: float | None = None
 
     @property
-    def seconds(self) -> float:
-        """Expected duration from now or from its start, s."""
-        return self.needs.seconds if self.left_s is None else self.left_s
-
-    @property
     def share(self) -> float:
         """Share of the item that is left, 0..1."""
         if self.left_s is None or self.needs.seconds <= 0.0:
             return 1.0
         return min(max(self.left_s / self.needs.seconds, 0.0), 1.0)
+
+    @property
+    def half_ranges(self) -> tuple[float, float]:
+        """How much sooner and later than the estimate 95 % of runs end, s, of what is left."""
+        needs = self.needs
+        return self.share * (needs.seconds - needs.low_s), self.share * (needs.high_s - needs.seconds)
+
+    @property
+    def mean_s(self) -> float:
+        """Mean duration from now or from its start, s."""
+        sooner_s, later_s = self.half_ranges
+        return (self.needs.seconds if self.left_s is None else self.left_s) + SKEW * (later_s - sooner_s)
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,15 +74,16 @@ def planned(queue: Queue, left_s: float | None = None) -> list[PlannedItem]:
 def predicted(items: Sequence[PlannedItem]) -> list[Times]:
     """Return the times of items that run one after another.
 
-    The deviations of different items are independent, so their half ranges add up as squares; those of one item are
-    as its estimate states.
+    The deviations of different items are independent, so their half ranges, from the mean of each, add up as squares.
+    One item alone has the range that its estimate states.
     """
     at_s, sooner_s, later_s = 0.0, 0.0, 0.0
     times: list[Times] = []
     for item in items:
         start_s = at_s + (BETWEEN_S if item.left_s is None and times else 0.0)
-        at_s = start_s + item.seconds
-        sooner_s = hypot(sooner_s, item.share * (item.needs.seconds - item.needs.low_s))
-        later_s = hypot(later_s, item.share * (item.needs.high_s - item.needs.seconds))
+        at_s = start_s + item.mean_s
+        below_s, above_s = item.half_ranges
+        shift_s = SKEW * (above_s - below_s)
+        sooner_s, later_s = hypot(sooner_s, below_s + shift_s), hypot(later_s, above_s - shift_s)
         times.append(Times(item.id, start_s, at_s, max(at_s - sooner_s, start_s), at_s + later_s))
     return times

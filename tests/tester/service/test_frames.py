@@ -120,7 +120,9 @@ def test_the_screen_of_a_real_rig_shows_requests_and_replies_of_every_line(
     assert (asked.ident, told.ident) == (1, 1)
 
 
-def test_a_bus_log_of_a_real_rig_has_the_frames_that_the_screen_shows(tmp_path: Path, lines: dict[str, FarEnd]) -> None:
+def test_a_bus_log_of_a_real_rig_has_the_frames_that_the_screen_shows(
+    tmp_path: Path, lines: dict[str, FarEnd]
+) -> None:
     rig = real_rig(tmp_path, lines)
     log = BusLog(tmp_path / "bus", rig)
     frames = watched(rig, lines, log)

@@ -169,7 +169,9 @@ def test_a_connection_that_has_ended_is_never_kept(bench: Bench) -> None:
     assert not bench.door.callers
 
 
-def test_a_flood_of_connections_leaves_four_fifths_of_the_time(bench: Bench, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_flood_of_connections_leaves_four_fifths_of_the_time(
+    bench: Bench, monkeypatch: pytest.MonkeyPatch
+) -> None:
     times = iter([10.0, 10.0, 10.0, 10.001, 10.0015, 10.0019, 10.00201, 10.00205])
     slept: list[float] = []
 

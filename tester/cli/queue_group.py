@@ -1,0 +1,290 @@
+"""`tester queue`: recipes that run one after another on the rig of the service."""
+
+from __future__ import annotations
+
+from collections.abc import Awaitable, Callable
+from pathlib import Path
+from typing import TYPE_CHECKING, Literal
+
+import click
+
+from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
+from tester.cli.options import (
+    SpeedType,
+    address_named,
+    command,
+    connect_option,
+    json_option,
+    name_here,
+    operator_option,
+    print_json,
+    runs_option,
+    seed_option,
+    set_option,
+    yes_option,
+)
+from tester.cli.queue_words import check_lines, queue_lines
+from tester.cli.service_commands import NO_SERVICE, take_option
+from tester.cli.text_table import shown
+
+if TYPE_CHECKING:
+    from tester.queue.view import QueueView
+    from tester.service.client import Client
+    from tester.service.commands import Action
+
+speed_option = click.option(
+    "--speed", type=SpeedType(), default="1", show_default=True, metavar="max|X",
+    help="Simulated rig: as fast as it goes, or X times real time.",
+)  # fmt: skip
+
+
+@command()
+@click.argument("recipe")
+@set_option
+@seed_option
+@speed_option
+@yes_option
+@operator_option
+@click.option("--note", "notes", default="", metavar="TEXT", help="Note for the run's record.")
+@click.option("--after", default="done,short", show_default=True, metavar="ENDS",
+              help="Ends after which the queue goes on: done, short, failed.")  # fmt: skip
+@connect_option
+@json_option
+def add(
+    recipe: str, overrides: tuple[str, ...], seed: int, speed: float | None, yes: bool, operator: str, notes: str,
+    after: str, address: str, as_json: bool,
+) -> int:  # fmt: skip
+    """Check RECIPE (a file, or the name of a packaged recipe), freeze it, and add it to the end of the queue."""
+    import recipes
+    from tester.service.commands import QueueAdd
+
+    try:
+        path = recipes.find(recipe)
+    except recipes.UnknownRecipe as error:
+        raise click.UsageError(str(error)) from error
+    packaged = path.parent == recipes.FOLDER and Path(recipe) != path
+    ends = tuple(_end(word.strip()) for word in after.split(",") if word.strip())
+    where = recipe if packaged else str(path.absolute())
+    action = QueueAdd(where, "", overrides, seed, speed, yes, operator, notes, ends)
+
+    async def work(client: Client) -> None:
+        result = await client.command(action, within_s=ADD_S)
+        number = result["id"] if isinstance(result, dict) else None
+        if as_json:
+            print_json(result)
+        else:
+            click.echo(f"item {number} added")
+
+    return _carry_out(address, work)
+
+
+ADD_S = 150.0
+"""Time limit of adding, s: a plan of 100,000 conditions takes some seconds, other items may be checked first [A]."""
+
+
+def _end(word: str) -> Literal["done", "short", "failed"]:
+    if word == "done" or word == "short" or word == "failed":
+        return word
+    raise click.UsageError(f'--after: "{word}" is no end after which a queue goes on (expected done, short, failed)')
+
+
+@command("list")
+@runs_option("Folder of the runs, where no service is running.")
+@click.option("--rig", "rig_name", default="sim", show_default=True, metavar="RIG", help="Rig, without a service.")
+@connect_option
+@json_option
+def list_(out: Path, rig_name: str, address: str, as_json: bool) -> int:
+    """List the items, what the queue waits for, and when each item is expected to end."""
+    view = _view(address, out, rig_name)
+    if as_json:
+        _print_whole(view)
+        return EXIT_DONE
+    for line in queue_lines(view):
+        click.echo(shown(line))
+    return EXIT_DONE
+
+
+@command()
+@click.argument("item", type=click.IntRange(1))
+@click.option(
+    "--before", default=0, metavar="ITEM", type=click.IntRange(0), help="Item before which it goes; 0: the end."
+)
+@connect_option
+def move(item: int, before: int, address: str) -> int:
+    """Move ITEM before another one, or to the end. A skipped item waits again."""
+    from tester.service.commands import QueueMove
+
+    return _edit(address, lambda revision: QueueMove(item, revision, before))
+
+
+@command()
+@click.argument("item", type=click.IntRange(1))
+@take_option
+@connect_option
+def skip(item: int, take: bool, address: str) -> int:
+    """Pass over ITEM. If it runs, it is stopped in a controlled way, and the next one begins."""
+    from tester.service.commands import QueueSkip
+
+    return _edit(address, lambda revision: QueueSkip(item, revision), control=True, take=take)
+
+
+@command()
+@click.argument("item", type=click.IntRange(1))
+@connect_option
+def drop(item: int, address: str) -> int:
+    """Remove ITEM, which does not run, from the queue."""
+    from tester.service.commands import QueueDrop
+
+    return _edit(address, lambda revision: QueueDrop(item, revision))
+
+
+@command()
+@click.option("--agree", multiple=True, metavar="ITEM", type=click.IntRange(1),
+              help="Item that runs although something changed since it was added. May be given again.")  # fmt: skip
+@take_option
+@connect_option
+def start(agree: tuple[int, ...], take: bool, address: str) -> int:
+    """Start the queue: its items run one after another, each after evidence about the rig."""
+    from tester.service.commands import QueueStart
+
+    return _edit(address, lambda _revision: QueueStart(agree), control=True, take=take)
+
+
+@command()
+@click.option("--reason", default="", metavar="TEXT", help="Why; it is shown with the queue.")
+@connect_option
+def stand(reason: str, address: str) -> int:
+    """Let the queue begin no further item; the item that runs goes on."""
+    from tester.service.commands import QueueStand
+
+    return _edit(address, lambda _revision: QueueStand(reason))
+
+
+@command()
+@click.option("--from", "begins", default="18:00", show_default=True, metavar="HH:MM", help="Begin of the window.")
+@click.option("--to", "ends", default="08:00", show_default=True, metavar="HH:MM", help="End of the window.")
+@runs_option("Folder of the runs, where no service is running.")
+@click.option("--rig", "rig_name", default="sim", show_default=True, metavar="RIG", help="Rig, without a service.")
+@connect_option
+@json_option
+def check(begins: str, ends: str, out: Path, rig_name: str, address: str, as_json: bool) -> int:
+    """Until when the queue runs alone, when somebody is needed, and which order would run longer.
+
+    Times are expected ones with the interval of 95 % of queues. Nothing is moved by it. Exit code 1 where the queue
+    needs a person, or is at its end, before the window ends.
+    """
+    from tester.base import clock
+    from tester.queue.check import night_check, window
+
+    now = clock.utc_now()
+    try:
+        times = window(begins, ends, now)
+    except ValueError as error:
+        raise click.UsageError(str(error)) from error
+    found = night_check(_view(address, out, rig_name), now, *times)
+    if as_json:
+        _print_whole(found)
+    else:
+        for line in check_lines(found):
+            click.echo(shown(line))
+    return EXIT_DONE if found.covered else EXIT_FAILED
+
+
+@command()
+@click.argument("name", default="")
+@click.option("--list", "listed", is_flag=True, help="List the keys that were made.")
+@click.option("--revoke", default=None, metavar="N", type=click.IntRange(1), help="Revoke key N.")
+@runs_option("Folder of the runs.")
+def key(name: str, listed: bool, revoke: int | None, out: Path) -> None:
+    """Make a key, for NAME, that reads the queue's calendar: times and names of items, nothing else."""
+    from tester.queue.calendar import calendar_keys, new_key, revoke_key
+
+    if revoke is not None:
+        revoke_key(out, revoke)
+        click.echo(f"key {revoke} is revoked")
+    elif listed:
+        for one in calendar_keys(out):
+            ended = f", revoked {one.revoked_utc}" if one.revoked_utc else ""
+            click.echo(shown(f"{one.number}  {one.name or 'no name'}, made {one.made_utc}{ended}"))
+    else:
+        click.echo(f"/queue.ics?key={new_key(out, name)}")
+
+
+def _edit(address: str, make: Callable[[int], Action], *, control: bool = False, take: bool = False) -> int:
+    """Change the queue as it is now, and return the exit code."""
+    from tester.service.commands import TakeControl
+
+    async def work(client: Client) -> None:
+        if take:
+            await client.command(TakeControl(force=True))
+        revision = client.queue.revision if client.queue is not None else 0
+        await client.command(make(revision))
+
+    return _carry_out(address, work, control=control)
+
+
+def _view(address: str, out: Path, rig_name: str) -> QueueView:
+    """Return the service's queue, or where no service runs the one on the disk."""
+    from tester.service.client import NoServiceError
+
+    found: list[QueueView] = []
+
+    async def work(client: Client) -> None:
+        if client.queue is None:
+            raise click.ClickException("the service has not read its queue yet")
+        found.append(client.queue)
+
+    try:
+        _with_service(address, work, control=False)
+    except NoServiceError:
+        return _stored(out, rig_name)
+    return found[0]
+
+
+def _stored(out: Path, rig_name: str) -> QueueView:
+    from tester.base import clock
+    from tester.queue.places import queue_folder
+    from tester.queue.record import read_queue
+    from tester.queue.view import view_of
+    from tester.run.kind_lookup import load_rig
+
+    rig = load_rig(rig_name)
+    queue = read_queue(queue_folder(out, rig.name, simulated=rig.simulated))
+    return view_of(queue, f"standing: {NO_SERVICE}", clock.utc_now())
+
+
+def _carry_out(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool = False) -> int:
+    """Do something with the service; print why not, and return the exit code."""
+    from tester.service.client import LostError, NoServiceError, RefusedError
+
+    try:
+        _with_service(address, work, control=control)
+    except NoServiceError:
+        click.echo(NO_SERVICE, err=True)
+        return EXIT_UNREACHABLE
+    except RefusedError as error:
+        hint = ": `--take` takes control" if "has control" in str(error) else ""
+        click.echo(shown(f"refused: {error}{hint}"), err=True)
+        return EXIT_FAILED
+    except (LostError, TimeoutError) as error:
+        click.echo(f"no answer: {error}", err=True)
+        return EXIT_FAILED
+    return EXIT_DONE
+
+
+def _with_service(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool) -> None:
+    import asyncio
+
+    from tester.service.client import Client
+
+    async def session() -> None:
+        async with await Client.connect(address_named(address), name=name_here(), control=control) as client:
+            await work(client)
+
+    asyncio.run(session())
+
+
+def _print_whole(value: object) -> None:
+    from pydantic_core import to_json
+
+    click.echo(to_json(value, inf_nan_mode="null"))

@@ -1,0 +1,61 @@
+"""Predicted times of items: sums, and intervals that grow as independent deviations do."""
+
+from __future__ import annotations
+
+from math import sqrt
+from random import Random
+
+import pytest
+
+from tester.queue.events import ItemAdded, ItemSkipped
+from tester.queue.predict import BETWEEN_S, PlannedItem, planned, predicted
+from tester.queue.view import view_of
+from tests.tester.queue.made import UTC, item, queue_of
+
+
+def of(count: int, share: float = 0.2) -> list[PlannedItem]:
+    return [PlannedItem(number, item(number, share=share).needs) for number in range(1, count + 1)]
+
+
+def test_items_follow_one_another() -> None:
+    times = predicted(of(3))
+    assert [one.start_s for one in times] == [0.0, 3600.0 + BETWEEN_S, 7200.0 + 2 * BETWEEN_S]
+    assert times[-1].end_s == 3 * 3600.0 + 2 * BETWEEN_S
+
+
+def test_one_item_has_the_range_of_its_estimate() -> None:
+    (one,) = predicted(of(1))
+    assert (one.low_s, one.high_s) == pytest.approx((0.8 * 3600.0, 1.2 * 3600.0))
+
+
+def test_a_skewed_item_has_the_range_of_its_estimate_around_a_later_mean() -> None:
+    needs = item(1).needs.__class__(1000.0, 900.0, 1400.0, 1, 1)
+    (one,) = predicted([PlannedItem(1, needs)])
+    assert (one.low_s, one.high_s) == pytest.approx((900.0, 1400.0))
+    assert one.end_s == pytest.approx(1060.0)
+
+
+def test_half_ranges_add_up_as_squares() -> None:
+    last = predicted(of(9))[-1]
+    assert last.high_s - last.end_s == pytest.approx(3.0 * 0.2 * 3600.0)
+
+
+def test_what_is_left_of_the_item_under_way_has_its_share_of_the_range() -> None:
+    (one,) = predicted([PlannedItem(1, item(1, share=0.2).needs, left_s=900.0)])
+    assert (one.end_s, one.high_s) == pytest.approx((900.0, 900.0 + 0.25 * 0.2 * 3600.0))
+
+
+def test_a_skipped_item_takes_no_time() -> None:
+    queue = queue_of(ItemAdded(item(1)), ItemAdded(item(2)), ItemSkipped(1, "anna"))
+    assert [one.id for one in planned(queue)] == [2]
+    view = view_of(queue, "standing", UTC)
+    assert [bool(one.start_utc) for one in view.items] == [False, True]
+
+
+def test_independent_deviations_end_inside_the_interval_in_95_per_cent() -> None:
+    random, inside = Random(7), 0
+    last = predicted(of(12))[-1]
+    for _ in range(2000):
+        total = sum(random.gauss(3600.0, 0.1 * 3600.0 * 2.0 / 1.96) for _ in range(12)) + 11 * BETWEEN_S
+        inside += last.low_s <= total <= last.high_s
+    assert inside / 2000 == pytest.approx(0.95, abs=4 * sqrt(0.05 * 0.95 / 2000))
