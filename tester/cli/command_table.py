@@ -93,6 +93,7 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
     },
     "Serve": {
         "serve": CommandEntry("service_commands", "serve", "Run the service that owns the rig."),
+        "page": CommandEntry("page_command", "page", "Open the rig's page for browsers."),
         "status": CommandEntry("service_commands", "status", "Print what the rig is doing."),
         "hold": CommandEntry("service_commands", "hold", "HOLD: lift, wait, keep the temperature."),
         "release": CommandEntry("service_commands", "release", "End a HOLD."),

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import hmac
 import os
 import socket
@@ -17,7 +16,7 @@ from websockets.http11 import Request, Response
 from tester.service.address import Address, TcpAddress, UnixAddress, peer_of, unlink_socket
 from tester.service.commands import MAX_MESSAGE
 from tester.service.gateway import Gateway
-from tester.service.manners import sparse_logger
+from tester.service.manners import counted, sparse_logger
 
 BACKLOG_BYTES = 65_536
 """Bytes that a client may leave unread before the server waits with the next message to it."""
@@ -79,26 +78,9 @@ def _settings(gateway: Gateway) -> dict[str, Any]:
     """Return the settings common to both kinds of server."""
     return {
         "origins": [None], "compression": None, "max_size": MAX_MESSAGE, "write_limit": BACKLOG_BYTES,
-        "close_timeout": CLOSE_S, "server_header": None, "create_connection": _counted(gateway),
+        "close_timeout": CLOSE_S, "server_header": None, "create_connection": counted(gateway.strangers),
         "logger": sparse_logger(LOG),
     }  # fmt: skip
-
-
-def _counted(gateway: Gateway) -> type[ServerConnection]:
-    """Return a connection class that reports each connection to the gateway as soon as it opens."""
-
-    class CountedConnection(ServerConnection):
-        """A connection that counts as not joined until it joins, so that the number of these is limited."""
-
-        def connection_made(self, transport: asyncio.BaseTransport) -> None:
-            gateway.strangers.came(self, cast("asyncio.Transport", transport))
-            super().connection_made(transport)
-
-        def connection_lost(self, exc: Exception | None) -> None:
-            gateway.strangers.known(self)
-            super().connection_lost(exc)
-
-    return CountedConnection
 
 
 def _port(server: Server) -> int:

@@ -6,6 +6,7 @@ import asyncio
 import logging
 import sys
 from collections.abc import Callable
+from typing import cast
 
 from websockets.asyncio.server import ServerConnection
 
@@ -64,6 +65,23 @@ class Strangers:
     def known(self, connection: ServerConnection) -> None:
         """Remove a connection that has joined or closed."""
         self._there.pop(connection, None)
+
+
+def counted(strangers: Strangers) -> type[ServerConnection]:
+    """Return a connection class that reports each connection to ``strangers`` as soon as it opens."""
+
+    class CountedConnection(ServerConnection):
+        """A connection that counts as not joined until it joins, so that the number of these is limited."""
+
+        def connection_made(self, transport: asyncio.BaseTransport) -> None:
+            strangers.came(self, cast("asyncio.Transport", transport))
+            super().connection_made(transport)
+
+        def connection_lost(self, exc: Exception | None) -> None:
+            strangers.known(self)
+            super().connection_lost(exc)
+
+    return CountedConnection
 
 
 class SparseLog(logging.Handler):

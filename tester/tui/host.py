@@ -28,10 +28,11 @@ from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
 from tester.service.state_view import RunView
 from tester.service.stop_call import NotTakenError
+from tester.service.stop_line import StopLine
 from tester.store.record_schema import StoreError
 from tester.tui.gone import farewell, stop_failed
 from tester.tui.screen_scene import ScreenScene
-from tester.tui.stop_line import StopLine, stopping
+from tester.tui.stop_line import stopping
 from tester.tui.theme import LookApp
 from tester.tui.widgets.panel_base import Panel
 

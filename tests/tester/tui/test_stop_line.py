@@ -13,7 +13,8 @@ from textual.message import Message
 from tester.service.address import UnixAddress
 from tester.service.stop_call import NotTakenError
 from tester.service.stop_lane import StopLane
-from tester.tui.stop_line import StopLine, stopping
+from tester.service.stop_line import StopLine
+from tester.tui.stop_line import stopping
 
 
 class Silent(Driver):
