@@ -33,10 +33,11 @@ BUS = CommandGroup(
     },
 )
 RESULTS = CommandGroup(
-    "Stored results: exclude, include, slip-ring.",
+    "Stored results: exclude, include, note, slip-ring.",
     {
         "exclude": CommandEntry("results_group", "exclude", "Leave a repeat out of the means."),
         "include": CommandEntry("results_group", "include", "Take an excluded repeat back into the means."),
+        "note": CommandEntry("results_group", "note", "Write a note or tags on a run."),
         "slip-ring": CommandEntry("results_group", "slip_ring", "Analyse the slip ring's errors."),
     },
 )

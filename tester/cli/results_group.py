@@ -1,4 +1,4 @@
-"""`tester results`: exclude or include a repeat, with a reason on record, and errors of the slip ring."""
+"""`tester results`: exclude or include a repeat, and notes, on record; errors of the slip ring."""
 
 from __future__ import annotations
 
@@ -55,6 +55,32 @@ def _decide(run: str, repeat: str, reason: str, operator: str | None, *, exclude
     n = f"valid {row.result.counts.words}"
     click.echo(f"{condition}/{number} {'excluded' if excluded else 'included'}: {shown(row.describe())}, {n}", err=True)
     click.echo(f"record head: {results.record_head}", err=True)
+
+
+@command()
+@click.argument("run")
+@click.argument("text", default="")
+@click.option("--tag", "tags", multiple=True, metavar="TAG", help="Tag to add; -TAG takes it back. May be given again.")
+@click.option("--operator", default=None, metavar="NAME", help="Who writes it.  [default: user]")
+def note(run: str, text: str, tags: tuple[str, ...], operator: str | None) -> None:
+    """Write a note on RUN, or tags by which it is found; the record keeps who wrote it and when.
+
+    With neither, print the notes and tags that it has.
+    """
+    from tester.base.lock import user
+    from tester.results.exclude import record_note
+    from tester.store.notes import notes_of, tags_of
+    from tester.store.run_reader import RunReader
+
+    folder = run_folder(run)
+    if text or tags:
+        record_note(folder, text, tags, user() if operator is None else operator)
+        return
+    with RunReader(folder) as reader:
+        for one in notes_of(reader):
+            words = one.text or f"tags {', '.join(one.tags)}"
+            click.echo(shown(f"{one.utc}  {one.by}: {words}" if one.by else f"{one.utc}  {words}"))
+        click.echo(shown(f"tags: {', '.join(tags_of(reader)) or 'none'}"))
 
 
 @command("slip-ring")

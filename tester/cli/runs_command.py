@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 
 import click
 
-from tester.base.words import Json, duration
+from tester.base.words import duration
 from tester.cli.options import command, json_option
-from tester.cli.text_table import dump, fields, shown
+from tester.cli.text_table import dump, shown
 from tester.store.run_folders import RunStatus
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def runs(
     With TESTER_CATALOGUE=postgresql://... the runs of all who share that catalogue.
     """
     from tester.results.catalogue import open_catalogue
-    from tester.results.catalogue.entries import WantedRuns, refresh
+    from tester.results.catalogue.entries import WantedRuns, entry_json, refresh
     from tester.store.run_folders import RUNS
 
     under = out or RUNS
@@ -45,7 +45,7 @@ def runs(
         stored = catalogue.runs(wanted)
     found = [run for run in stored if not status or run.status == status]
     if as_json:
-        dump([_record(run) for run in found])
+        dump([entry_json(run) for run in found])
         return
     for run in found:
         if run.problem:
@@ -71,21 +71,6 @@ def standing(run: RunEntry, under: Path) -> str:
         holder = under_way(under / run.name) if run.origin == origin_of(under) else None
         return f"{status}, {holder.describe()}" if holder is not None else f"{status} on {run.origin} when last seen"
     return f"{status}, {run.repeats} of {run.repeats_planned} repeats committed"
-
-
-def _record(run: RunEntry) -> Json:
-    found: dict[str, Json] = {"run": run.name, "origin": run.origin}
-    if run.problem:
-        return found | {"status": run.status, "problem": run.problem}
-    return {
-        **found,
-        **fields(run, "status recipe operator started_utc"),
-        "ended_utc": run.ended_utc or None,
-        "compounds": list[Json](run.compounds.split("\n")),
-        **fields(run, "rig_seconds simulated seed conditions repeats repeats_planned"),
-        "values": run.trusted,
-        "can_resume": RunStatus(run.status).can_resume,
-    }
 
 
 def _date(text: str, option: str) -> str:

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Generator, Iterable
+from contextlib import contextmanager
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from tester import __version__
@@ -15,6 +17,7 @@ from tester.results.formats import FORMATS
 from tester.results.run_files import MANIFEST, manifest_problems, write_all
 from tester.store.amend import add_exclusion, standing
 from tester.store.journal_records import StoredExclusion
+from tester.store.notes import RunNote, add_note, checked, notes_of
 from tester.store.record_file import DATABASE
 from tester.store.records import StoredRepeat
 from tester.store.run_reader import RunReader
@@ -61,20 +64,16 @@ def record_word(folder: Path, word: Word) -> None:
         plain_text(word.operator, "operator")
     except ValueError as error:
         raise CannotExcludeError(str(error)) from error
-    with ExclusiveUse() as use:
-        try:
-            use.lock_file(folder.name, folder / RUN_LOCK, folder.name, lasting=False)
-        except RigInUseError as error:
-            raise CannotExcludeError(f"the run is under way, wait for its end: {error}") from error
-        manifest = folder / MANIFEST
-        before = manifest.read_text("utf-8") if manifest.is_file() else ""
+    with alone_with(folder) as before:
         with RunReader(folder) as reader:
             stored = reader.exclusions()
             repeat = _wanted(reader.repeats(), word)
-        unfinished = is_unfinished(stored, before)
+            cut_off = is_cut_off(reader, before)
         if before:
-            _check_manifest(folder, unfinished=unfinished)
-        finishes = unfinished and (stored[-1].target, stored[-1].excluded) == (repeat.target, int(word.excluded))
+            _check_manifest(folder, unfinished=cut_off)
+        finishes = is_unfinished(stored, before) and (
+            (stored[-1].target, stored[-1].excluded) == (repeat.target, int(word.excluded))
+        )
         if not finishes:  # otherwise the decision is stored already, and only the tables are missing
             _refuse_contradiction(stored, repeat, word)
             now = clock.utc_now()
@@ -85,6 +84,44 @@ def record_word(folder: Path, word: Word) -> None:
             )  # fmt: skip
         if before:  # a run without a manifest has no tables yet: they are made at its end
             write_all(folder)
+
+
+def record_note(folder: Path, text: str, tags: Iterable[str], by: str) -> None:
+    """Store a person's note on a run that is not under way, with tags (a minus before one takes it back).
+
+    Refused as ``record_word`` is. Raises CannotExcludeError, StoreError, OSError.
+    """
+    try:
+        note = checked(RunNote(clock.utc_now(), by.strip(), text.strip(), tuple(tags)))
+    except ValueError as error:
+        raise CannotExcludeError(str(error)) from error
+    with alone_with(folder) as before:
+        if before:
+            with RunReader(folder) as reader:
+                cut_off = is_cut_off(reader, before)
+            _check_manifest(folder, unfinished=cut_off)
+        add_note(folder, replace(note, manifest_before=before))
+        if before:
+            write_all(folder)
+
+
+@contextmanager
+def alone_with(folder: Path) -> Generator[str]:
+    """Keep other processes from a run; yield its manifest, "" where it has none. Raises CannotExcludeError."""
+    with ExclusiveUse() as use:
+        try:
+            use.lock_file(folder.name, folder / RUN_LOCK, folder.name, lasting=False)
+        except RigInUseError as error:
+            raise CannotExcludeError(f"the run is under way, wait for its end: {error}") from error
+        manifest = folder / MANIFEST
+        yield manifest.read_text("utf-8") if manifest.is_file() else ""
+
+
+def is_cut_off(reader: RunReader, manifest: str) -> bool:
+    """Return whether a power cut or a kill came between the latest decision or note and the tables after it."""
+    notes = notes_of(reader)
+    noted = bool(notes) and bool(manifest) and notes[-1].manifest_before == manifest
+    return noted or is_unfinished(reader.exclusions(), manifest)
 
 
 def is_unfinished(exclusions: list[StoredExclusion], manifest: str) -> bool:

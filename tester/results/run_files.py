@@ -15,7 +15,9 @@ from tester.store.run_reader import RunReader
 
 MANIFEST = "manifest.json"
 
-_LEFT_OUT = (".part", "-wal", "-shm", "-journal", ".lock")
+PYRAMID = ".pyramid"
+"""Suffix of a file that only speeds up drawing: it is made anew from the record whenever it is missing."""
+_LEFT_OUT = (".part", "-wal", "-shm", "-journal", ".lock", PYRAMID)
 """Suffixes of temporary files."""
 
 

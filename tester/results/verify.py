@@ -10,7 +10,7 @@ from pathlib import Path
 from tester import __version__
 from tester.base.source import InvalidSource, read_tree
 from tester.base.trouble import in_words
-from tester.results.exclude import is_unfinished
+from tester.results.exclude import is_cut_off, is_unfinished
 from tester.results.formats import Record
 from tester.results.recomputed import coefficient_problems, table_problems
 from tester.results.run_files import MANIFEST, file_sha256, manifest_head, manifest_problems
@@ -127,8 +127,11 @@ def _named(folder: Path, run: StoredRun) -> list[str]:
 def _cut_off(folder: Path, exclusions: list[StoredExclusion]) -> list[str]:
     """Return the remedy where a kill came between a person's decision on a repeat and the tables that follow it."""
     path = folder / MANIFEST
-    if not path.is_file() or not is_unfinished(exclusions, path.read_text("utf-8", errors="replace")):
-        return []
+    manifest = path.read_text("utf-8", errors="replace") if path.is_file() else ""
+    if not is_unfinished(exclusions, manifest):
+        with RunReader(folder) as reader:
+            noted = is_cut_off(reader, manifest)
+        return [f"a note on {folder.name} was cut off before its manifest was made: another note makes it"] * noted
     last = exclusions[-1]
     command = f"tester results {'exclude' if last.excluded else 'include'} {folder.name} {last.condition}/{last.repeat}"
     return [f"`{command}` was cut off before the tables were made: the same command again makes them"]

@@ -10,13 +10,14 @@ from math import isfinite
 from pathlib import Path
 
 from tester.analysis.results import Burst
-from tester.base.quantities import Channel, Quantities
+from tester.base.quantities import Quantities
 from tester.base.screen import MachineView, PlotView, Value, trend_columns
-from tester.machine.panel import Wanted
 from tester.results.run_results import results_of
 from tester.run.kind_lookup import load_rig_text, served_kind
 from tester.run.run_materials import law_copies
 from tester.service.protocol import Event
+from tester.service.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
+from tester.service.recorded_values import recorded_setpoint, recorded_value
 from tester.service.state_view import (
     ClientsView,
     DiskView,
@@ -27,8 +28,6 @@ from tester.service.state_view import (
     TickView,
 )
 from tester.service.values import (
-    NOTHING_WANTED,
-    friction,
     measured,
     screen_of,
     trend_row,
@@ -37,7 +36,6 @@ from tester.service.values import (
 )
 from tester.store.records import ConditionInfo, StoredCondition, StoredRepeat, StoredRun
 from tester.store.run_reader import RunReader
-from tester.tui.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
 from tester.tui.screen_scene import ScreenScene
 from tester.tui.widgets.trends_panel import WINDOW_S
 
@@ -134,36 +132,23 @@ class Playback:
         row = {name: column[index] for name, column in self.samples.items()}
         age_s = at_s - row["time_s"]
         found = tuple(
-            measured(spec, self._measured(channel, row), self._wanted(channel, row, info), age_s,
+            measured(spec, recorded_value(self.quantities, channel, row),
+                     recorded_setpoint(self.quantities, channel, row, info), age_s,
                      "good" if age_s <= OLD_S else "stale")
             for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
         )  # fmt: skip
         return with_pressure(found, self.run.info.metadata)
 
-    def _measured(self, channel: Channel, row: dict[str, float]) -> float | None:
-        """Return a channel's value in a sample; None if it was not recorded."""
-        if channel.source:
-            return channel.scaled(row.get(channel.name))
-        return friction(self.quantities, row.__getitem__)
-
-    def _wanted(self, channel: Channel, row: dict[str, float], info: ConditionInfo | None) -> Wanted:
-        """Return a channel's setpoint: the recorded one, else that of the condition under way."""
-        screen = screen_of(channel)
-        if screen.setpoint:
-            return Wanted(channel.scaled(row.get(screen.setpoint)))
-        if not screen.axis or info is None:
-            return NOTHING_WANTED
-        warm = channel.name == self.quantities.roles.temperature
-        setpoint = info.setpoint
-        return Wanted(setpoint.axes[screen.axis].number(setpoint), info.temperature_band_k if warm else None)
-
     def _row(self, index: int) -> tuple[float | None, ...]:
         """Return a row of the trend; unrecorded setpoints are left empty."""
         row = {name: column[index] for name, column in self.samples.items()}
         values = {
-            spec.key: measured(spec, self._measured(channel, row), self._wanted(channel, row, None))
+            spec.key: measured(
+                spec, recorded_value(self.quantities, channel, row),
+                recorded_setpoint(self.quantities, channel, row, None),
+            )
             for spec, channel in zip(self.specs, self.quantities.shown, strict=True)
-        }
+        }  # fmt: skip
         return (row["time_s"], row["time_s"], *trend_row(self.quantities, values))
 
 

@@ -11,7 +11,7 @@ from typing import Protocol
 
 from tester.base.axes import Axes, AxisValue, Setpoint, axes_from
 from tester.base.trouble import TroubleError
-from tester.base.words import finite
+from tester.base.words import Json, finite
 from tester.results.run_results import results_of
 from tester.results.table_rows import Measured
 from tester.store.record_file import DATABASE
@@ -130,6 +130,24 @@ class Catalogue(Protocol):
     def close(self) -> None:
         """Close it."""
         ...
+
+
+def entry_json(run: RunEntry) -> dict[str, Json]:
+    """Return a run as `tester runs --json` prints it; of an unreadable one only its name and the problem."""
+    found: dict[str, Json] = {"run": run.name, "origin": run.origin}
+    if run.problem:
+        return found | {"status": run.status, "problem": run.problem}
+    return {
+        **found,
+        "status": run.status, "recipe": run.recipe, "operator": run.operator, "started_utc": run.started_utc,
+        "ended_utc": run.ended_utc or None,
+        "compounds": list[Json](run.compounds.split("\n")),
+        "rig_seconds": None if run.rig_seconds is None else finite(run.rig_seconds),
+        "simulated": run.simulated, "seed": run.seed,
+        "conditions": run.conditions, "repeats": run.repeats, "repeats_planned": run.repeats_planned,
+        "values": run.trusted,
+        "can_resume": RunStatus(run.status).can_resume,
+    }  # fmt: skip
 
 
 def origin_of(under: Path) -> str:

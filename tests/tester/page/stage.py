@@ -22,7 +22,7 @@ from tester.page.page_process import PageOptions, host_page
 from tester.page.roles import Role
 from tests.tester.service.fake import FakeService
 
-WITHIN_S = 10.0
+WITHIN_S = 60.0
 
 
 def free_port() -> int:

@@ -25,7 +25,7 @@ Story = Callable[[PageStage], Awaitable[None]]
 
 def play(folder: Path, story: Story, **options: Any) -> None:
     async def run() -> None:
-        async with asyncio.timeout(30.0), PageStage(folder, **options) as stage:
+        async with asyncio.timeout(120.0), PageStage(folder, **options) as stage:
             await story(stage)
 
     asyncio.run(run())

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tester.service.protocol import Event
-from tester.tui.recorded_steps import left_of, plan_of, recorded_steps
+from tester.service.recorded_steps import left_of, plan_of, recorded_steps
 
 
 def event(t_s: float, kind: str, text: str) -> Event:

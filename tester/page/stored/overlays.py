@@ -1,0 +1,114 @@
+"""Runs laid over each other: coefficients against an axis, and each later run's difference and ratio to the first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from math import hypot, isfinite, nan
+from typing import Final
+
+from tester.base.axes import Axis, condition_words
+from tester.base.words import Json, finite
+from tester.page.stored.run_cache import QuestionError
+from tester.results.columns import unit_of
+from tester.results.compared import Pair, pairs
+from tester.results.measured_tables import repeats_table
+from tester.results.run_results import RunResults
+from tester.results.table_rows import TableRow
+from tester.store.run_reader import RunReader
+
+MOST: Final = 6
+"""Runs in one picture: as many as there are colours that three kinds of colour-blind people tell apart."""
+ALONG: Final = {"repeat": ("repeat", ""), "time": ("rig time", "s"), "sliding": ("sliding", "m")}
+"""What repeats may be aligned on, with title and unit."""
+
+
+def overlay_page(runs: Sequence[tuple[RunReader, RunResults]], against: str) -> dict[str, Json]:
+    """Return one to six runs against an axis of their conditions, or repeat by repeat. Raises QuestionError."""
+    if not 1 <= len(runs) <= MOST:
+        raise QuestionError(f"runs: expected 1 to {MOST}")
+    if against in ALONG:
+        title, unit = ALONG[against]
+        return {
+            "against": {"key": against, "title": title, "unit": unit},
+            "runs": [{"run": r.run.info.name, "points": _repeats(reader, r, against)} for reader, r in runs],
+            "difference": [], "ratio": [],
+        }  # fmt: skip
+    results = [found for _, found in runs]
+    axis = _axis(results, against)
+    first = results[0]
+    matched = [(one, list(pairs(first, one))) for one in results[1:]]
+    return {
+        "against": {"key": axis.name, "title": axis.name.replace("_", " "), "unit": unit_of(axis)},
+        "runs": [{"run": one.run.info.name, "points": [_point(row, axis) for row in one.rows]} for one in results],
+        "difference": [
+            {"run": one.run.info.name, "points": [p for pair in found if (p := _difference(pair, axis))]}
+            for one, found in matched
+        ],
+        "ratio": [
+            {"run": one.run.info.name, "points": [p for pair in found if (p := _ratio(pair, axis))]}
+            for one, found in matched
+        ],
+    }  # fmt: skip
+
+
+def _axis(results: Sequence[RunResults], name: str) -> Axis:
+    """Return the axis of a name, that all runs have. Raises QuestionError."""
+    kinds = {one.run.info.kind for one in results}
+    if len(kinds) > 1:
+        raise QuestionError(f"runs: of different kinds of rigs: {', '.join(sorted(kinds))}")
+    for axis in results[0].axes:
+        if axis.name == name and all(name in one.axes.places for one in results):
+            return axis
+    known = ", ".join([*(axis.name for axis in results[0].axes), *ALONG])
+    raise QuestionError(f"against: no axis {name!r} of all these runs (expected one of {known})")
+
+
+def _point(row: TableRow, axis: Axis) -> dict[str, Json]:
+    return {
+        "x": axis.of(row.info.setpoint), "mu": finite(row.result.mu), "u": finite(row.result.budget.expanded),
+        "label": condition_words(row.info.setpoint), "n": row.info.condition, "compound": row.info.compound,
+    }  # fmt: skip
+
+
+def _difference(pair: Pair, axis: Axis) -> dict[str, Json] | None:
+    """Return the difference of a matched pair with its expanded uncertainty; None without one."""
+    if not isfinite(pair.found.value):
+        return None
+    u = pair.found.coverage * pair.found.standard
+    return _compared(pair, axis, pair.found.value, u)
+
+
+def _ratio(pair: Pair, axis: Axis) -> dict[str, Json] | None:
+    """Return the ratio of a matched pair, and its expanded uncertainty from that of the difference; None without one.
+
+    The ratio is 1 + difference / first, so what both runs share (the same calibration) does not count twice. The
+    first's own uncertainty scales only the deviation from 1.
+    """
+    if pair.first is None or not isfinite(pair.found.value) or not pair.first.result.mu:
+        return None
+    mu, own = pair.first.result.mu, pair.first.result.budget.expanded
+    off = pair.found.value / mu
+    u = hypot(pair.found.coverage * pair.found.standard / mu, off * own / mu)
+    return _compared(pair, axis, 1.0 + off, u)
+
+
+def _compared(pair: Pair, axis: Axis, y: float, u: float) -> dict[str, Json]:
+    setpoint = pair.either.info.setpoint
+    return {"x": axis.of(setpoint), "y": y, "u": finite(u), "label": condition_words(setpoint)}
+
+
+def _repeats(reader: RunReader, results: RunResults, along: str) -> list[Json]:
+    """Return the committed repeats of a run along their number, rig time or the sliding of their piece."""
+    table, travels = repeats_table(results), reader.travels()
+    points: list[Json] = []
+    for row in table.rows:
+        travel = travels.get(row.repeat.key)
+        x = {
+            "repeat": float(row.repeat.repeat), "time": row.result.started_s,
+            "sliding": travel.piece_m if travel is not None else nan,
+        }[along]  # fmt: skip
+        points.append({
+            "x": finite(x), "mu": finite(row.result.mu_resultant), "u": finite(row.result.uncertainty),
+            "label": f"{condition_words(row.measured.info.setpoint)}, repeat {row.repeat.repeat}",
+        })  # fmt: skip
+    return points

@@ -1,0 +1,120 @@
+"""Samples at every zoom: nothing that was recorded lies outside what is drawn."""
+
+from __future__ import annotations
+
+import shutil
+import sqlite3
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from tester.page.stored import pyramid
+from tester.page.stored.drawn_columns import drawn, drawn_columns
+from tester.page.stored.pyramid import FACTOR, Buckets, Pyramid, pyramid_of
+from tester.results.verify import verify
+from tester.store.run_reader import RunReader
+
+
+@pytest.fixture
+def own(run: Path, tmp_path: Path) -> Path:
+    """Return a copy of the run."""
+    return Path(shutil.copytree(run, tmp_path / run.name))
+
+
+def made(folder: Path, before: Pyramid | None = None, *, lasting: bool = True) -> Pyramid:
+    with RunReader(folder) as reader:
+        return pyramid_of(reader, before, lasting=lasting)
+
+
+def window(folder: Path, of: Pyramid, from_s: float, to_s: float, points: int) -> Buckets:
+    with RunReader(folder) as reader:
+        return of.window(reader, from_s, to_s, points)
+
+
+def every_sample(folder: Path) -> tuple[np.ndarray, np.ndarray]:
+    with RunReader(folder) as reader:
+        samples, quantities = reader.samples(), reader.quantities()
+        return samples["time_s"], drawn(drawn_columns(quantities), samples, quantities, reader.conditions())
+
+
+@pytest.mark.parametrize("points", [1, 7, 50, 400, 8192])
+def test_every_sample_lies_between_the_least_and_the_greatest_value_of_its_bucket(run: Path, points: int) -> None:
+    t_s, values = every_sample(run)
+    found = window(run, made(run), -1.0, 1e9, points)
+    assert 0 < len(found.t_s) <= 2 * points
+    place = np.searchsorted(found.t_s, t_s, "right") - 1
+    known = np.isfinite(values)
+    assert (place >= 0).all()
+    assert (values.astype(np.float32) >= found.low[:, place])[known].all()
+    assert (values.astype(np.float32) <= found.high[:, place])[known].all()
+
+
+def test_the_extremes_are_recorded_values_and_no_others(run: Path) -> None:
+    _, values = every_sample(run)
+    found = window(run, made(run), -1.0, 1e9, 20)
+    assert np.array_equal(np.nanmax(found.high, axis=1), np.nanmax(values, axis=1).astype(np.float32))
+    assert np.array_equal(np.nanmin(found.low, axis=1), np.nanmin(values, axis=1).astype(np.float32))
+
+
+def test_a_narrow_window_shows_the_samples_themselves(run: Path) -> None:
+    t_s, values = every_sample(run)
+    first = len(t_s) // 2
+    found = window(run, made(run), float(t_s[first]), float(t_s[first + 99]), 100)
+    assert np.array_equal(found.t_s, t_s[first : first + 100])
+    assert np.array_equal(found.low, found.high, equal_nan=True)
+    assert np.array_equal(found.low, values[:, first : first + 100].astype(np.float32), equal_nan=True)
+
+
+def test_a_window_without_samples_is_empty(run: Path) -> None:
+    found = window(run, made(run), 1e8, 1e9, 100)
+    assert found.low.shape == (len(made(run).columns), len(found.t_s)) and len(found.t_s) <= 1
+
+
+def test_levels_shrink_by_eight(run: Path) -> None:
+    sizes = [len(level.t_s) for level in made(run).levels]
+    assert all(-(-a // FACTOR) == b for a, b in pairwise(sizes)) and sizes[-1] <= FACTOR
+
+
+def test_the_file_beside_the_record_is_read_again_and_is_no_part_of_the_run(
+    own: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(pyramid, "AT_LEAST", 1)
+    first = made(own)
+    assert (own / "samples.pyramid").is_file() and not [p for p in verify(own).problems if "pyramid" in p]
+    monkeypatch.setattr(pyramid, "_made", lambda *_: pytest.fail("made again"))
+    again = made(own)
+    assert np.array_equal(first.first.low, again.first.low, equal_nan=True)
+
+
+@pytest.mark.parametrize("damage", [b"", b"\x93NUMPY", b"x" * 100])
+def test_a_damaged_file_is_made_anew(damage: bytes, own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pyramid, "AT_LEAST", 1)
+    first = made(own)
+    (own / "samples.pyramid").write_bytes(damage)
+    assert np.array_equal(made(own).first.low, first.first.low, equal_nan=True)
+
+
+def test_a_file_of_other_samples_is_not_used(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pyramid, "AT_LEAST", 1)
+    made(own)
+    kept = (own / "samples.pyramid").read_bytes()
+    with sqlite3.connect(own / "run.db") as database:
+        database.execute("DELETE FROM sample_block WHERE id = (SELECT max(id) FROM sample_block)")
+    fewer = made(own)
+    assert (own / "samples.pyramid").read_bytes() != kept
+    assert len(fewer.first.t_s) < len(made(own, lasting=False).first.t_s) + 1
+
+
+def test_a_growing_run_adds_only_its_new_blocks(own: Path) -> None:
+    whole = made(own, lasting=False)
+    with sqlite3.connect(own / "run.db") as database:
+        last = database.execute("SELECT * FROM sample_block ORDER BY id DESC LIMIT 1").fetchone()
+        database.execute("DELETE FROM sample_block WHERE id = ?", (last[0],))
+    before = made(own, lasting=False)
+    with sqlite3.connect(own / "run.db") as database:
+        database.execute(f"INSERT INTO sample_block VALUES ({', '.join('?' * len(last))})", last)
+    after = made(own, before, lasting=False)
+    assert np.array_equal(after.first.t_s, whole.first.t_s)
+    assert np.array_equal(after.first.high, whole.first.high, equal_nan=True)
