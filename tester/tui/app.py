@@ -21,6 +21,7 @@ from tester.service.commands import Acknowledge, Hold, ListRuns, Release, TakeCo
 from tester.service.state_view import RunView, StateView
 from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog, ResumeDialog, resumable
 from tester.tui.dialogs.dialog import Dialog, TextDialog
+from tester.tui.dialogs.pages_dialog import PagesDialog, watch_pages
 from tester.tui.gone import TITLE, SmallPanel, death_text
 from tester.tui.host import HostApp, Keys, TuiOptions, View
 from tester.tui.pages.bus import BusPage
@@ -120,6 +121,8 @@ class TesterApp(HostApp):
         self.query_one(TabLine).tabs = self.SCREENS_HERE
         self.go_to(self.FIRST)
         self.connect()
+        if self.HAS_RIG and not self.options.view_only:  # a screen for everybody shows no codes
+            self.run_worker(watch_pages(self), name="pages", group="pages", exit_on_error=False)
 
     def on_resize(self, event: Resize) -> None:
         """Lay out for the new size, because Textual itself adopts it only later."""
@@ -249,6 +252,13 @@ class TesterApp(HostApp):
         """Take control from the client that has it."""
         self.order(TakeControl(force=True), "this screen controls")
 
+    def action_pages(self) -> None:
+        """Show who is paired with the page, and codes to pair another browser."""
+        if self.options.view_only:
+            self.say("view only: codes are shown on the machine's own screen")
+        elif not isinstance(self.screen, Dialog):
+            self.push_screen(PagesDialog())
+
     def action_commission(self) -> None:
         """Open the commissioning screen, as `tester commission RIG --tui` does, while no run is under way."""
         state, options = self.scene.state, self.options
@@ -280,6 +290,7 @@ class TesterApp(HostApp):
         for key, title, name in self.SCREENS_HERE:
             yield SystemCommand(f"Screen: {title}", key.upper(), lambda name=name: self.go_to(name))
         yield SystemCommand("Commission…", "Guide a new rig to its first coefficient", self.action_commission)
+        yield SystemCommand("Pages in browsers…", "Codes to pair one, who is paired", self.action_pages)
         yield SystemCommand("Take control", "From the client that has it", self.action_take_control)
         for name in THEMES:
             yield SystemCommand(f"Theme: {name}", "Colours", lambda name=name: self.action_use_theme(name))

@@ -38,6 +38,7 @@ Enter   on a recipe: the start dialog, or with problems the first of them. On a 
 e       edit in $EDITOR, a shipped recipe as your copy; the recipe is then checked again.
 d       the plan: steps, durations, total, sliding distance, wear.
 g       look for recipes again.
+b       pages in browsers: codes to pair one, who is paired, and the end of a pairing.
 Tab     from list to text to problems.
 While the editor has the terminal, keys go to it: `tester stop` in another shell stops the rig.
 """
@@ -53,6 +54,7 @@ class RecipesView(View):
         Binding("e", "edit", "Edit", show=False),
         Binding("d", "plan", "Plan", show=False),
         Binding("g", "reload", "Look again", show=False),
+        Binding("b", "app.pages", "Browsers", show=False),
     ]
 
     def __init__(self, *, id: str) -> None:  # noqa: A002 - as in Textual
