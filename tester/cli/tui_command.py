@@ -33,18 +33,13 @@ SWITCH_S = 0.001
 @theme_option
 @ascii_option
 @click.option("--view", "view_only", is_flag=True, help="Watch only: command nothing, start no service.")
-@click.option("--web", is_flag=True, help="Serve a view-only screen to browsers of this machine (extra: web).")
-@click.option("--port", type=click.IntRange(1, 65535), default=8000, show_default=True, help="Of --web.")
 def tui(
-    address: str, rig_name: str, speed: float | None, out: Path, theme: str | None, plain: bool, view_only: bool,
-    web: bool, port: int,
+    address: str, rig_name: str, speed: float | None, out: Path, theme: str | None, plain: bool, view_only: bool
 ) -> int:  # fmt: skip
     """Show the rig, choose recipes, run them, see results. Starts the service if none runs.
 
     F12 or Ctrl+X is STOP on every screen. Leaving with q touches no run.
     """
-    if web:
-        return _serve(port, address)
     need_terminal("tester tui", "`tester status`, `tester run` and `tester stop` need none")
     from tester.tui.app import TesterApp
     from tester.tui.host import TuiOptions
@@ -60,24 +55,11 @@ def tui(
 
 
 def need_terminal(command: str, instead: str) -> None:
-    """Raise UsageError where there is no terminal to draw on and to read keys from. A browser's screen needs none."""
-    if "TEXTUAL_DRIVER" in os.environ:
-        return
+    """Raise UsageError where there is no terminal to draw on and to read keys from."""
     if not all(stream is not None and stream.isatty() for stream in (sys.__stdin__, sys.__stderr__)):
         raise click.UsageError(f"{command} needs a terminal, and there is none here; {instead}")
     if os.environ.get("TERM") == "dumb":
         raise click.UsageError(f"{command} needs a terminal that can place text, and TERM is dumb; {instead}")
-
-
-def _serve(port: int, address: str) -> int:
-    from tester.base.plugins import needs
-    from tester.tui.web import serve
-
-    try:
-        serve(port, address)
-    except ImportError:
-        raise click.UsageError(needs("--web", "textual-serve", "web")) from None
-    return 0
 
 
 @command()

@@ -41,6 +41,8 @@ from tester.service.stop_line import StopLine
 
 FIRST_WITHIN_S = 10.0
 """A socket without a first message is closed after this time, s."""
+WRONG_S = 0.5
+"""How long a page that is refused waits for its answer, s: a flood of guesses waits, and takes no time from STOP."""
 NOT_PAIRED = 4003
 """Close code for a page whose code or secret is not accepted, or no longer."""
 FELL_BEHIND = 4001
@@ -86,6 +88,7 @@ class Reception:
             async with asyncio.timeout(FIRST_WITHIN_S):
                 pairing, greeting = self._entered(await connection.recv())
         except (PairingError, BadFrontError) as error:
+            await asyncio.sleep(WRONG_S)
             await _turn_away(connection, str(error))
             return
         except (ConnectionClosed, TimeoutError):

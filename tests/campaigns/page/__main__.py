@@ -37,7 +37,7 @@ GROWS_MB = 10.0
 """What the page process may grow by while a page is frozen."""
 START_S = 60.0
 FINGER = "finger"
-FLOOD_S = 20.0
+FLOOD_S = 40.0
 """Tries made while wrong codes come take so long at most."""
 
 

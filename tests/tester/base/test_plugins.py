@@ -189,7 +189,6 @@ def test_the_command_that_installs_an_extra_is_named() -> None:
     ("command", "library", "extra"),
     [
         (["sweep", "quickstart", "--dask", "tcp://127.0.0.1:1", "--out", "sweeps"], "distributed", "cluster"),
-        (["tui", "--web"], "textual_serve.server", "web"),
     ],
 )
 def test_a_command_that_needs_an_extra_is_a_usage_error(

@@ -14,7 +14,7 @@ def folder(at: Path) -> Path:
     (at / "js").mkdir()
     (at / "index.html").write_text("<!doctype html>")
     (at / "js" / "live.js").write_text("export {}")
-    (at / "notes.md").write_text("not for browsers")
+    (at / "notes.rst").write_text("not for browsers")
     (at / "js" / "LICENSE").write_text("MIT")
     return at
 
@@ -34,7 +34,7 @@ def test_files_are_served_by_their_path_below_the_folder(tmp_path: Path) -> None
 def test_nothing_outside_the_list_is_served(tmp_path: Path) -> None:
     files = static_files(folder(tmp_path))
     (tmp_path / "later.js").write_text("later")
-    for path in ("/static/later.js", "/static/../answers.py", "/static/%2e%2e/x", "//static/index.html", "/notes.md"):
+    for path in ("/static/later.js", "/static/../answers.py", "/static/%2e%2e/x", "//static/index.html", "/notes.rst"):
         assert get(path, files).status_code == 404
 
 

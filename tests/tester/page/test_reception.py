@@ -12,6 +12,7 @@ import pytest
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from tester.base.trouble import MisuseError
+from tester.page import reception
 from tester.page.desk_call import NewCode, Revoke
 from tester.page.page_process import PageOptions, check_options
 from tester.service.commands import Hold
@@ -183,7 +184,11 @@ def test_stop_goes_to_its_own_door_in_a_message_of_any_form(tmp_path: Path) -> N
 # -- who gets in ---------------------------------------------------------------------------------------------
 
 
-def test_a_thousand_wrong_codes_open_nothing_and_leave_paired_pages_their_stop(tmp_path: Path) -> None:
+def test_a_thousand_wrong_codes_open_nothing_and_leave_paired_pages_their_stop(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(reception, "WRONG_S", 0.0)
+
     async def story(stage: PageStage) -> None:
         lane = StopLane()
         lane.open(stage.fake.address)
