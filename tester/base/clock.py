@@ -28,6 +28,12 @@ def sleep_until(deadline_s: float) -> float:
     return max(0.0, time.monotonic() - deadline_s)
 
 
+def wall_s() -> float:
+    """Return the wall clock in seconds since 1970 (UTC), for deadlines that must survive a restart; never for control.
+    """
+    return time.time()
+
+
 def utc_now() -> str:
     """Return the wall clock as ISO 8601 text in UTC, for records only; never for control."""
     return datetime.now(UTC).isoformat(timespec="milliseconds").replace("+00:00", "Z")
