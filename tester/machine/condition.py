@@ -118,5 +118,6 @@ class MeasureCondition(Generic[ContextT, StepT, RepeatT]):
         return not self.results.another(self.condition) and self._close(ctx, ConditionEnd())
 
     def _close(self, ctx: ContextT, end: ConditionEnd) -> bool:
-        ctx.journal.event(ctx.now, "condition", self.results.finish_condition(ctx, self.condition, end))
+        text = self.results.finish_condition(ctx, self.condition, end)
+        ctx.journal.event(ctx.now, "condition", text, "warning" if self.results.lost else "info")
         return True

@@ -42,6 +42,8 @@ class StoredResults(Generic[ContextT]):
         interrupted run resumes."""
         self.recorder = recorder
         self.combining: Combining = combining
+        self.lost = False
+        """Whether the condition that ended last has no value."""
         self.condition = 0
         """Number of the present condition, to which the fields below belong."""
         self.repeats: list[RepeatResult] = []
@@ -166,6 +168,7 @@ class StoredResults(Generic[ContextT]):
             judged=self._for_the_record(),
         )
         self.condition = 0
+        self.lost = not result.ok
         name = f"condition {step.condition} ({condition_words(step.setpoint)})"
         if not result.ok:
             return f"{name}: {stored_status.value}: {result.reason}"

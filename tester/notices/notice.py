@@ -21,6 +21,23 @@ MOST_SUBJECT, MOST_LINE = 120, 600
 """Longest subject, and longest line of a text, in characters [A]: a line of a mail has at most 998 bytes (RFC 5322)."""
 
 
+MOST_KEPT: Final = 500
+"""Number of notes that the service repeats to a sender that starts anew [A]: it makes fewer in a month."""
+
+
+@dataclass(frozen=True, slots=True)
+class SenderSettings:
+    """What the service tells its sender. ``service``: id of its life; ``command``: of ``tester serve --notify``."""
+
+    service: str
+    runs: str
+    rig: str
+    command: str = ""
+
+
+SENDER: Final[TypeAdapter[SenderSettings]] = TypeAdapter(SenderSettings)
+
+
 class NoticeCause(StrEnum):
     """Why a person gets a notice; the value is a command's ``TESTER_EVENT``."""
 

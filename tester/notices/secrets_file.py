@@ -13,6 +13,8 @@ from pathlib import Path
 from typing import Final
 
 from tester.base.source import InvalidSource, Problem, load_tree
+from tester.base.trouble import in_words
+from tester.notices.notice_settings import config_folder, read_settings, settings_path
 
 FILE: Final = "notices-secrets.yaml"
 VARIABLES: Final = {
@@ -52,9 +54,26 @@ def read_secrets(path: Path, environment: Mapping[str, str]) -> NoticeSecrets:
     return NoticeSecrets(**found)
 
 
+def secrets_path() -> Path:
+    """Return the place of the secrets, which need not exist."""
+    return config_folder() / FILE
+
+
 def without_secrets(environment: Mapping[str, str]) -> dict[str, str]:
     """Return an environment for a command that needs no secrets."""
     return {name: value for name, value in environment.items() if name not in VARIABLES.values()}
+
+
+def settings_trouble(command: str = "") -> tuple[str, ...]:
+    """Return why the user's settings or secrets cannot be used, a line each; none if they can."""
+    try:
+        read_settings(settings_path(), command)
+        read_secrets(secrets_path(), os.environ)
+    except InvalidSource as error:
+        return tuple(map(str, error.problems))
+    except OSError as error:
+        return (in_words(error),)
+    return ()
 
 
 def _read(path: Path) -> dict[str, str]:

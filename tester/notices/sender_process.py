@@ -1,6 +1,7 @@
 """The process that sends notices, `python -m tester.notices.sender_process`: settings and notes on its standard input.
 
-One line each: first ``SenderSettings``, then notes. The process ends with its input, after an attempt of what waits.
+One line each: first ``SenderSettings``, then notes (``tester.notices.notice``). The process ends with its input, after
+an attempt of what waits.
 """
 
 from __future__ import annotations
@@ -8,12 +9,11 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Callable
-from dataclasses import dataclass
 from pathlib import Path
 from threading import Event, Thread
 from typing import BinaryIO, Final
 
-from pydantic import TypeAdapter, ValidationError
+from pydantic import ValidationError
 
 from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError
@@ -21,11 +21,10 @@ from tester.base.processes import leave_to_parent
 from tester.base.source import InvalidSource
 from tester.notices.channels.every_channel import channels_of
 from tester.notices.dispatch import NoticeDispatch
-from tester.notices.notice import NOTE
-from tester.notices.notice_settings import NoticeSettings, config_folder, read_settings, settings_path
+from tester.notices.notice import NOTE, SENDER
+from tester.notices.notice_settings import NoticeSettings, read_settings, settings_path
 from tester.notices.outbox_file import OutboxFile, outbox_path
-from tester.notices.secrets_file import FILE as SECRETS
-from tester.notices.secrets_file import NoticeSecrets, read_secrets
+from tester.notices.secrets_file import NoticeSecrets, read_secrets, secrets_path
 
 NICE: Final = 10
 """Lower priority: the scan comes first."""
@@ -35,19 +34,6 @@ LOCK_EVERY_S: Final = 0.5
 """Period of asking for the outbox while an earlier sender still has it, s."""
 CHANNELS: Final = ("mail", "ntfy", "apprise", "command")
 """A thread for each: a slow relay delays no other channel."""
-
-
-@dataclass(frozen=True, slots=True)
-class SenderSettings:
-    """What the service tells its sender. ``service``: id of its life; ``command``: of ``tester serve --notify``."""
-
-    service: str
-    runs: str
-    rig: str
-    command: str = ""
-
-
-SETTINGS: TypeAdapter[SenderSettings] = TypeAdapter(SenderSettings)
 
 
 class SettingsOnDisk:
@@ -73,10 +59,10 @@ class SettingsOnDisk:
         return True
 
     def _read(self) -> tuple[NoticeSettings, NoticeSecrets]:
-        return read_settings(settings_path(), self.command), read_secrets(config_folder() / SECRETS, os.environ)
+        return read_settings(settings_path(), self.command), read_secrets(secrets_path(), os.environ)
 
     def _stamps(self) -> list[tuple[int, int, int]]:
-        paths = (settings_path(), config_folder() / SECRETS)
+        paths = (settings_path(), secrets_path())
         states = [path.stat() for path in paths if path.exists()]
         return [(state.st_mtime_ns, state.st_size, state.st_mode) for state in states]
 
@@ -145,7 +131,7 @@ def complain(text: str) -> None:
 
 def serve(lines: BinaryIO) -> int:
     """Send what arrives on ``lines``; return the exit code."""
-    settings = SETTINGS.validate_json(lines.readline())
+    settings = SENDER.validate_json(lines.readline())
     path = outbox_path(Path(settings.runs))
     try:
         disk = SettingsOnDisk(settings.command)

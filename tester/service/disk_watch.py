@@ -21,12 +21,11 @@ _CONSEQUENCE = "a run that cannot be recorded is stopped"
 
 
 class DiskWatch:
-    """Measures the free space under a folder, raises alarms about it, and runs the user's hook when the space becomes
-    low.
+    """Measures the free space under a folder, raises alarms about it, and gives notice when the space becomes low.
     """
 
-    def __init__(self, runs: Path, alarms: AlarmList, notify: Callable[[str, str], None]) -> None:
-        """Start the first measurement and wait briefly for it. ``notify`` is called with an event and its text."""
+    def __init__(self, runs: Path, alarms: AlarmList, notify: Callable[[str], None]) -> None:
+        """Start the first measurement and wait briefly for it. ``notify`` is called with the free space in words."""
         self._runs = runs
         self._alarms = alarms
         self._notify = notify
@@ -53,7 +52,7 @@ class DiskWatch:
         full = Cause("disk nearly full", 2, text, _CONSEQUENCE, value=free / 1e6, limit=least / 1e6, unit="MB")
         self._alarms.set(self._low, full, now_s)
         if self._low and not was_low:
-            self._notify("disk", text)
+            self._notify(text)
         return DiskView(free, needed, self._low)
 
 

@@ -38,7 +38,6 @@ from tester.service.commands import (
     WatchFrames,
 )
 from tester.service.guests import Guest, Guests
-from tester.service.hook import Hook
 from tester.service.manners import MOST_CLIENTS, Strangers
 from tester.service.protocol import (
     EVENTS_KEPT,
@@ -83,17 +82,26 @@ class Gateway:
     """The state that all connections share."""
 
     def __init__(
-        self, tell: Callable[[bytes], None], service: str, software: str, queries: Queries, hook: Hook
+        self,
+        tell: Callable[[bytes], None],
+        service: str,
+        software: str,
+        queries: Queries,
+        notify: Callable[[bytes], None],
     ) -> None:
-        """``tell`` sends a line to the owner; ``service`` identifies this instance of the service."""
+        """``tell`` sends a line to the owner, ``notify`` a note to the sender of notices; ``service`` identifies this
+        instance of the service.
+        """
         self.owner = GatewayEnd(tell)
         self.strangers = Strangers()
         self.service = service
         self.software = software
         self.queries = queries
-        self.hook = hook
+        self._notify = notify
         self.guests = Guests(self.owner)
-        self._ended, self._next = False, 1
+        self.ended = False
+        """Whether the owner has ended on request."""
+        self._next = 1
         self._state = b""
         self._plan = b"null"
         self.queue = QueueAnswers()
@@ -137,13 +145,13 @@ class Gateway:
             if (asker := self.guests.get(int(number))) is not None:
                 self._reply(asker, reply)
         elif kind == b"b":
-            self._ended = True
+            self.ended = True
         elif kind == b"k":
             self.owner.looked_at(int(rest))
         elif kind == b"t":
             self._rows.append(rest)
         elif kind == b"n":
-            self.queries.start(self.hook.notify(rest))
+            self._notify(rest)
         elif kind == b"f":
             for guest in self.guests.values():
                 if guest.frames:
@@ -160,7 +168,7 @@ class Gateway:
 
     def farewell(self) -> None:
         """Send every client a ``goodbye``: the owner has ended or, if it sent no goodbye itself, has died."""
-        last = Goodbye("the service has ended", ended=True) if self._ended else Goodbye("the service has died")
+        last = Goodbye("the service has ended", ended=True) if self.ended else Goodbye("the service has died")
         for guest in self.guests.values():
             guest.outbox.reply(encode(last))
 

@@ -19,6 +19,7 @@ from pydantic_core import to_json
 from tester import __version__
 from tester.base import clock
 from tester.base.screen import MachineView
+from tester.notices.notice import MOST_KEPT, NOTE, NextNeeded, Notice, NoticeOver
 from tester.queue.view import QueueView
 from tester.service.address import Address, TcpAddress, UnixAddress, stop_path, unlink_socket
 from tester.service.child_process import spawn
@@ -63,6 +64,8 @@ class GatewayLink:
     _process: subprocess.Popen[bytes] | None = None
     _events: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=EVENTS_KEPT))
     _rows: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=TREND_ROWS))
+    _notes: deque[bytes] = field(default_factory=lambda: deque[bytes](maxlen=MOST_KEPT))
+    _next: bytes = b""
     _plan: bytes = b"pnull"
     _queue: bytes = b""
     _machine: bytes = b""
@@ -144,9 +147,16 @@ class GatewayLink:
         """Answer that an order is refused, with the reason."""
         self._send(b"a%d " % order.client + encode(Refused(order.id, reason)))
 
-    def notify(self, event: str, text: str, run: str, folder: str) -> None:
-        """Run the user's hook."""
-        self._send(b"n" + to_json({"event": event, "text": text, "run": run, "folder": folder, "utc": clock.utc_now()}))
+    def notify(self, note: Notice | NoticeOver | NextNeeded) -> None:
+        """Give a note to the process that sends notices; a new gateway gets it again."""
+        line = b"n" + NOTE.dump_json(note)
+        if isinstance(note, NextNeeded):
+            if line == self._next:
+                return
+            self._next = line
+        else:
+            self._notes.append(line)
+        self._send(line)
 
     # -- receiving ----------------------------------------------------------------------------------------------
 
@@ -210,8 +220,8 @@ class GatewayLink:
             self._send(self._machine)
         for row in self._rows:
             self._send(b"t" + row)
-        for event in self._events:
-            self._send(event)
+        for line in (*self._events, *self._notes, *((self._next,) if self._next else ())):
+            self._send(line)
         self._send(self._plan)
         if self._queue:
             self._send(self._queue)

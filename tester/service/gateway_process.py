@@ -12,12 +12,15 @@ from pathlib import Path
 
 from pydantic import TypeAdapter
 
+from tester.base import clock
+from tester.notices.causes import died
+from tester.notices.notice import NOTE, SenderSettings
 from tester.service.address import TcpAddress, UnixAddress, write_card
 from tester.service.child_process import link_to_owner
 from tester.service.gateway import Gateway
-from tester.service.hook import Hook
 from tester.service.listening import CLOSE_S, listening
 from tester.service.manners import sparse_logger
+from tester.service.notice_forwarder import NoticeForwarder
 from tester.service.queries import Queries
 from tester.service.service_link import MOST_QUEUED
 
@@ -53,7 +56,10 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
         if not writer.is_closing():
             writer.write(line + b"\n")
 
-    gateway = Gateway(tell, settings.service, settings.software, queries, Hook(settings.notify))
+    sender = SenderSettings(settings.service, settings.runs, settings.rig, settings.notify)
+    notices = NoticeForwarder(sender)
+    notices.open()
+    gateway = Gateway(tell, settings.service, settings.software, queries, notices.take)
     path = Path(settings.path)
     tcp = TcpAddress("127.0.0.1", settings.port, settings.token, settings.stop_port)
     address = tcp if settings.token else UnixAddress(path)
@@ -64,6 +70,10 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
             while line := await reader.readline():
                 gateway.take(line[:-1])
         gateway.farewell()
+        if not gateway.ended:
+            last = died(f"{settings.service}-died", clock.utc_now(), settings.rig)
+            notices.take(NOTE.dump_json(last))
+        await asyncio.to_thread(notices.close)
         with suppress(TimeoutError):
             async with asyncio.timeout(CLOSE_S):
                 await gateway.all_told()

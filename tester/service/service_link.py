@@ -10,7 +10,7 @@ The owner's side never waits. Each of its lines is a letter, then JSON; the gate
     a CLIENT REPLY    the answer to a client's command
     f FRAMES          a frames message
     t ROW             a row of the trend alone: history for a gateway that has restarted
-    n NOTE            a note for the notify hook
+    n NOTE            a note for the process that sends notices (``tester.notices.notice``)
     b                 goodbye: the owner has ended on request; without it, the owner has died
     k COUNT           the owner has read this many of the gateway's lines: the gateway may send as many more
 

@@ -8,6 +8,7 @@ from pathlib import Path
 from tester.base.lock import ExclusiveUse, RigInUseError
 from tester.base.plugins import allow_only
 from tester.base.processes import EXIT_FAILED, EXIT_USAGE
+from tester.notices.secrets_file import settings_trouble
 from tester.service.address import (
     CARD,
     HAS_UNIX,
@@ -44,6 +45,9 @@ def host(options: ServiceOptions, url: str, port: int | None, notify: str) -> in
         except (OSError, AddressError) as error:
             sys.stderr.write(f"the service cannot listen: {error}\n")
             return EXIT_FAILED
+        for problem in settings_trouble(notify):
+            sys.stderr.write(f"notices: {problem}\n")
+            service.desk.tell("notices", f"no notice goes: {problem}", "warning")
         sys.stderr.write(f'rig "{service.rig.name}" is served at {address}\n')
         sys.stderr.flush()
         try:

@@ -21,6 +21,7 @@ from tester.service.address import with_peer
 from tester.service.alarms import AlarmList, Cause
 from tester.service.disk_watch import DiskWatch
 from tester.service.gateway_link import GatewayLink
+from tester.service.notifier import Notifier
 from tester.service.preflight import Past, known_checks
 from tester.service.protocol import SNAPSHOT_S
 from tester.service.service_link import Order
@@ -33,8 +34,6 @@ UNWATCHED_S = 1.0
 """Period of states while no client is connected, s: the trend continues at a rate that costs almost nothing."""
 SOONEST_S = 0.05
 """Shortest time between two states, s, however many commands clients send."""
-NOTIFIED = frozenset({"trip"})
-"""Kinds of events that run the notify hook. Other code reports hold, prompt, finished and disk."""
 
 
 def do_nothing(*_: object) -> None:
@@ -79,7 +78,6 @@ class Desk:
     _shown_s: float = float("-inf")
     _mode: str = ""
     _mode_since_s: float = 0.0
-    _asked: int = 0
     _revision: int = 0
     """Revision of the list of steps that was last sent to clients."""
     _controller: int = 0
@@ -87,6 +85,7 @@ class Desk:
     _unknown: tuple[Value, ...] = ()
     _alone: str = ""
     _risk: str = ""
+    notices: Notifier = field(init=False)
     kind: ServedKind = field(init=False)
     """Kind of the service's own rig."""
     alarms: AlarmList = field(init=False)
@@ -98,7 +97,8 @@ class Desk:
         self.gateway.machine(self.kind.machine)
         self._unknown = with_pressure(unknown_values(quantities_on(self.rig), self.rig), self.rig.area_metadata)
         self._alone = self.kind.alone(self.rig)
-        self._disk = DiskWatch(self.runs, self.alarms, self.notify)
+        self.notices = Notifier(self.gateway, self.rig.name, simulated=self.rig.simulated)
+        self._disk = DiskWatch(self.runs, self.alarms, self.notices.disk)
         self._risk = risk_of(self.rig)
 
     # -- runs -------------------------------------------------------------------------------------------------
@@ -111,7 +111,8 @@ class Desk:
         run.engine.ctx.journal.on_event = self.forward
         self.gateway.lane.begin_ticking()
         self.now_s = 0.0
-        self._asked = self._revision = 0
+        self.notices.begun(view)
+        self._revision = 0
         if hand is not None:
             self.gateway.plan(None)
         else:
@@ -133,6 +134,7 @@ class Desk:
             for name in self.watch.watched:
                 self.alarms.clear(name)
         self.watch = self.hand = None
+        self.notices.over()
         self.gateway.machine(self.kind.machine)
         self.stop_rest = do_nothing
         self.run = view
@@ -143,7 +145,8 @@ class Desk:
         text = f"{view.name}: {view.outcome}" + (f": {view.reason}" if view.reason else "")
         self.run = view
         self.tell("run", text, "info" if outcome is Outcome.DONE else "warning")
-        self.notify("finished", text)
+        if view.folder:  # manual mode has none: a person is there
+            self.notices.ended(view, text)
         watch = self.watch
         self.seen = watch.seen() if watch else None
         if watch is not None and not watch.acknowledged and (outcome is Outcome.TRIPPED or watch.latched):
@@ -183,8 +186,7 @@ class Desk:
         if kind == "emergency" and self.watch is not None:
             self.watch.buses.count_emergency(text)
         self.tell(kind, text, severity, t_s)
-        if kind in NOTIFIED:
-            self.notify(kind, text)
+        self.notices.event(kind, text, severity)
 
     def tell(self, kind: str, text: str, severity: str = "info", t_s: float | None = None) -> None:
         """Send every client an event."""
@@ -197,11 +199,6 @@ class Desk:
         else:
             ctx = self.watch.run.engine.ctx
             ctx.journal.event(ctx.now, kind, text, severity)  # the journal calls ``forward``
-
-    def notify(self, event: str, text: str) -> None:
-        """Run the user's hook."""
-        run = self.run
-        self.gateway.notify(event, text, run.name if run else "", run.folder if run else "")
 
     # -- between two ticks ------------------------------------------------------------------------------------
 
@@ -255,25 +252,20 @@ class Desk:
         if watch is not None:
             watch.watch_values(self.alarms, now, view.values)
         self.gateway.state(view, self._row(view))
-        self._notice_prompt(view)
+        if self.notices.prompt(view.prompt) and view.prompt is not None:
+            self.tell("prompt", view.prompt.text, "warning")
 
     def _show_steps(self, watch: RunWatch) -> None:
         """Send the list of steps if it has changed, before the state that refers to it."""
         if self.hand is None and watch.track.revision != self._revision:
             self._revision = watch.track.revision
             self.gateway.plan(watch.track.view())
+            self.notices.next(watch.track, self._lapse)
 
     def _watch_frames(self, watch: RunWatch) -> None:
         watch.frames.watch(self.gateway.presence.frames)
         if watch.frames.watching and (frames := watch.frames.take()) is not None:
             self.gateway.frames(frames)
-
-    def _notice_prompt(self, view: StateView) -> None:
-        number = view.prompt.number if view.prompt is not None else 0
-        if number and number != self._asked and view.prompt is not None:
-            self.tell("prompt", view.prompt.text, "warning")
-            self.notify("prompt", view.prompt.text)
-        self._asked = number
 
     # -- the view ---------------------------------------------------------------------------------------------
 
@@ -312,17 +304,20 @@ class Desk:
         )
         if watch is None:
             return state
-        lapse = (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
-        return watch.shown_in(state, lapse)
+        return watch.shown_in(state, self._lapse)
+
+    @property
+    def _lapse(self) -> float | None:
+        """Rig seconds per second of the run, None if unknown."""
+        return (self.run.speed if self.run.simulated else 1.0) if self.run is not None else None
 
     def _situation(self) -> tuple[str, str, float]:
-        """Return mode, reason, and seconds in this mode. Run the hook when a hold begins."""
+        """Return mode, reason, and seconds in this mode."""
         if self.watch is not None:
             mode, text, since_s = self.watch.mode
             if self.hand is not None and mode == "RUN":
                 mode = "MANUAL"
-            if mode == "HOLD" and self._mode != "HOLD":
-                self.notify("hold", text or "held")
+            self.notices.mode(mode, text)
             self._mode = mode
             return mode, text, since_s
         mode, text = "OFFLINE", "the rig is connected when a run begins"

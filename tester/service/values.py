@@ -4,6 +4,7 @@ times.
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import hypot, inf, isfinite
@@ -159,6 +160,8 @@ def trend_row(quantities: Quantities, values: Mapping[str, Value]) -> list[float
     return row
 
 
+ASKING = frozenset({"install", "mount", "prompt"})
+"""Kinds of steps that begin with a question to a person."""
 LISTED = 400
 """Greatest number of steps in a plan message, around the present step: a plan may have 100,000."""
 BEFORE = 100
@@ -172,6 +175,7 @@ class PlanTrack(TimeLeft):
         """Begin before the first step; ``name``: the plan's."""
         super().__init__(parts, earlier)
         self.name = name
+        self._asking = [place for place, step in enumerate(self.steps) if step is not None and step.kind in ASKING]
         self._words = ListWords(step.setpoint for step in self.steps if isinstance(step, ConditionStep))
 
     def view(self) -> PlanView:
@@ -187,6 +191,16 @@ class PlanTrack(TimeLeft):
         )  # fmt: skip
         beyond_s = float(self.ahead[behind:].sum())
         return PlanView(self.name, len(self.steps), first + 1, listed, sum(self.estimated), beyond_s)
+
+    def next_question(self) -> tuple[float, str] | None:
+        """Return when a later step will ask a person, s of rig time from now, and for what; None if none will."""
+        behind = bisect_right(self._asking, self.position)
+        if behind == len(self._asking):
+            return None
+        place = self._asking[behind]
+        return self.standing().step_left_s + float(self.ahead[self.position + 1 : place].sum()), self._title(
+            self.steps[place]
+        )
 
     def _title(self, step: Step | None) -> str:
         if step is None:

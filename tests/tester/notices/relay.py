@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from email import message_from_bytes
 from email.message import EmailMessage
 from email.policy import default
-from threading import Event, Thread
+from threading import Condition, Event, Thread
 from types import TracebackType
 from typing import cast
 
@@ -55,6 +55,7 @@ class MailRelay:
     taken: list[TakenMail] = field(default_factory=list[TakenMail])
     connections: int = 0
     port: int = 0
+    _news: Condition = field(default_factory=Condition)
     _loop: asyncio.AbstractEventLoop = field(default_factory=asyncio.new_event_loop)
     _thread: Thread | None = None
 
@@ -73,6 +74,11 @@ class MailRelay:
         self._loop.call_soon_threadsafe(self._loop.stop)
         assert self._thread is not None
         self._thread.join(10.0)
+
+    def wait_for(self, mails: int, within_s: float = 30.0) -> None:
+        """Return once the relay has taken so many mails."""
+        with self._news:
+            assert self._news.wait_for(lambda: len(self.taken) >= mails, within_s), f"{len(self.taken)} of {mails}"
 
     def _serve(self, up: Event) -> None:
         implicit = self.tls if not self.starttls else None
@@ -135,7 +141,9 @@ class MailRelay:
                     if self.drops:
                         self.drops -= 1
                         return
-                    self.taken.append(TakenMail(sender, to, _unstuffed(raw), security))
+                    with self._news:
+                        self.taken.append(TakenMail(sender, to, _unstuffed(raw), security))
+                        self._news.notify_all()
                     if self.loses:
                         self.loses -= 1
                         return

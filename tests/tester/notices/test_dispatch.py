@@ -13,6 +13,7 @@ from tester.notices.dispatch import DELAYS_S, OLD_S, REFUSALS
 from tester.notices.mailing import Mailing
 from tester.notices.notice import NextNeeded, NoticeCause, NoticeOver
 from tester.notices.outbox_file import read_entries
+from tester.notices.secrets_file import NoticeSecrets
 from tests.tester.notices.relay import MailRelay
 from tests.tester.notices.scene import ANNA, HEAD, NOON_S, OutboxScene, PlayedChannel, mail_settings, notice
 
@@ -268,3 +269,17 @@ def test_a_sender_that_is_started_anew_at_seven_sends_the_mornings_message_once(
         scene.pass_time(45.0)
         scene.close()
     assert len(channel.taken) == 1
+
+
+def test_a_servers_answer_that_repeats_the_password_does_not_bring_it_into_the_outbox(tmp_path: Path) -> None:
+    with MailRelay("rig", "another") as relay:
+        scene = OutboxScene(tmp_path, mail_settings(relay.port, user="rig"), secrets=NoticeSecrets("pw-7f3c1e"))
+        scene.take(notice(1))
+    (entry,) = [entry for entry in read_entries(tmp_path / "outbox") if entry["k"] == "tried"]
+    assert "535 not with the password (secret)" in str(entry["why"])
+    assert b"pw-7f3c1e" not in (tmp_path / "outbox").read_bytes()
+
+
+def test_the_outbox_holds_neither_addresses_nor_topics(scene: OutboxScene, tmp_path: Path) -> None:
+    scene.take(notice(1))
+    assert ANNA.encode() not in (tmp_path / "outbox").read_bytes()

@@ -20,7 +20,6 @@ from pydantic_core import to_json
 from tester.base.screen import MachineView
 from tester.service.address import Address, UnixAddress
 from tester.service.gateway import Gateway
-from tester.service.hook import Hook
 from tester.service.listening import listening
 from tester.service.protocol import Accepted, Event, Refused, encode
 from tester.service.queries import Queries
@@ -35,7 +34,9 @@ class FakeService:
 
     def __init__(self, folder: Path, *, service: str = "life-1", uid: int | None = None) -> None:
         """Listen in ``folder`` once entered; the first state is ``tests.tester.service.views.state()``."""
-        self.gateway = Gateway(self._hear, service, "0.0", Queries(folder), Hook(""))
+        self.notes: list[bytes] = []
+        """Notes for the sender of notices."""
+        self.gateway = Gateway(self._hear, service, "0.0", Queries(folder), self.notes.append)
         self.address: Address = UnixAddress(folder / "service.sock")
         self.orders: list[Order] = []
         self.presence = Presence("", 0, 0, False)

@@ -19,6 +19,7 @@ from pydantic import JsonValue
 
 from recipes import UnknownRecipe
 from tester.base.source import InvalidSource
+from tester.notices.notice import NextNeeded, Notice, NoticeOver
 from tester.queue.assess import Assessment, AssessTask, assess
 from tester.queue.view import QueueView
 from tester.run.endings import CannotStartError
@@ -50,6 +51,7 @@ class Stage(GatewayLink):
         self.accepted: dict[str, JsonValue] = {}
         self.refused: dict[str, str] = {}
         self.notes: list[tuple[str, str]] = []
+        self.told: list[Notice | NoticeOver | NextNeeded] = []
         self.polls = 0
         self.silent = False
         """The screen that controls gives no sign of life."""
@@ -103,8 +105,10 @@ class Stage(GatewayLink):
     def refuse(self, order: Order, reason: str) -> None:
         self.refused[order.action.command] = reason
 
-    def notify(self, event: str, text: str, run: str, folder: str) -> None:
-        self.notes.append((event, text))
+    def notify(self, note: Notice | NoticeOver | NextNeeded) -> None:
+        self.told.append(note)
+        if isinstance(note, Notice):
+            self.notes.append((note.cause.value, note.what))
 
     def receive(self) -> list[Order | Presence]:
         assert self.service is not None

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import asyncio
-import json
 import os
 import signal
 import subprocess
@@ -18,7 +17,6 @@ from tester.service.address import CARD, TcpAddress, UnixAddress, new_tcp_addres
 from tester.service.client import Client, Gone, Link, Lost, NoServiceError
 from tester.service.commands import CheckRecipe, ListRecipes, RunRecipe
 from tester.service.gateway_link import GatewayLink, LinkConfig
-from tester.service.hook import Hook
 from tester.service.protocol import Hello, Snapshot
 from tester.service.service import ServiceOptions
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
@@ -126,22 +124,6 @@ def test_tcp_needs_the_token(tmp_path: Path) -> None:
     finally:
         gateway.close()
     assert not (tmp_path / CARD).exists()
-
-
-def test_the_hook_gets_the_event_as_json_and_in_its_environment(tmp_path: Path) -> None:
-    out = tmp_path / "out.json"
-    program = (
-        "import json, os, sys; "
-        f"open({str(out)!r}, 'w').write(json.dumps([json.load(sys.stdin), os.environ['TESTER_EVENT']]))"
-    )
-    hook = Hook(f'"{sys.executable}" -c "{program}"')
-    asyncio.run(hook.notify(b'{"event":"trip","text":"overload \\u0000 $(x)","run":"r"}'))
-    assert json.loads(out.read_text()) == [{"event": "trip", "text": "overload \0 $(x)", "run": "r"}, "trip"]
-
-
-def test_a_hook_that_cannot_be_run_is_told_and_harms_nothing(capfd: pytest.CaptureFixture[str]) -> None:
-    asyncio.run(Hook("no-such-program-anywhere").notify(b'{"event":"trip"}'))
-    assert "no-such-program-anywhere" in capfd.readouterr().err
 
 
 @posix

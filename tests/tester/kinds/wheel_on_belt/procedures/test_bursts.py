@@ -304,6 +304,11 @@ def test_rolling_is_one_window_without_slip(rolling_run: Simulation) -> None:
     assert max(row["slip_m_s"] for row in rows) < 0.005
 
 
+def test_the_event_of_a_condition_without_a_value_is_a_warning(hot_run: Simulation, quiet_run: Simulation) -> None:
+    for run, expected in ((hot_run, "warning"), (quiet_run, "info")):
+        assert [severity for _, kind, _, severity in run.notes.events if kind == "condition"] == [expected]
+
+
 def test_a_condition_that_cannot_be_held_counts_no_revolution(hot_run: Simulation) -> None:
     assert hot_run.notes.written("INSERT INTO burst") == []
 
