@@ -57,7 +57,7 @@ def conditions_section(record: RunRecord, key: str) -> ReportSection:
             f"the mean temperature that was measured. {WITH_CARE} marks a value to be taken with care, "
             f"{NOT_TRUSTED} a number that is not to be trusted."
         ),
-        rendered(shown, f"Conditions of {record.name}", COUNTS_NOTE, tone=tone_of),
+        rendered(shown, f"Conditions of {record.name}", COUNTS_NOTE, tone=tone_of, cards=True),
     ]
     advised = [row.advise() for row in results.rows if not row.result.ok or row.result.doubts]
     parts += [Listing(advised, "care")] if advised else []
@@ -78,7 +78,7 @@ def short_table(results: RunResults) -> ReportTable:
     conditions = recipe_rows(conditions_table(results))
     if len(conditions.rows) <= SHORT_ROWS:
         axes = results.axes.differing(row.info.setpoint for row in conditions.rows)
-        return rendered(conditions.view(Output.COVER, axis_keys(axes)), "What was found", tone=tone_of)
+        return rendered(conditions.view(Output.COVER, axis_keys(axes)), "What was found", tone=tone_of, cards=True)
     return _by_compound(conditions)
 
 

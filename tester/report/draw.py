@@ -32,8 +32,8 @@ FORMATS: Final = ("png", "svg", "pdf")
 PANEL_INCH: Final = (3.6, 3.2)
 STRIP_INCH: Final = (7.2, 1.5)
 """Size of a panel of a stacked chart."""
-COLUMNS: Final = 3
-"""Panels side by side."""
+COLUMNS, COLUMNS_OF_PAGE = 3, 2
+"""Panels side by side, in a file and in a page, whose letters would else be too small."""
 TITLE_WIDTH, NOTE_WIDTH = 52, 64
 """Characters of title and note that fit over a panel."""
 RC: Final[dict[str, object]] = {
@@ -67,7 +67,7 @@ def draw(figure: Figure, path: Path, dpi: float = 150.0) -> None:
     if ending not in FORMATS:
         raise ValueError(f"{path.name}: a figure is one of {', '.join(FORMATS)}")
     made = BytesIO()
-    _draw(figure, made, ending, dpi, {})
+    _draw(figure, made, ending, dpi, {}, COLUMNS)
     path.write_bytes(made.getvalue())
 
 
@@ -77,11 +77,13 @@ def svg_for_a_page(figure: Figure) -> bytes:
     Raises MissingExtraError.
     """
     made = BytesIO()
-    _draw(figure, made, "svg", 72.0, IN_A_PAGE)
+    _draw(figure, made, "svg", 72.0, IN_A_PAGE, COLUMNS_OF_PAGE)
     return made.getvalue()
 
 
-def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: dict[str, object]) -> None:
+def _draw(
+    figure: Figure, target: BinaryIO, ending: str, dpi: float, further: dict[str, object], most_across: int
+) -> None:
     try:
         import matplotlib  # pyright: ignore
         from matplotlib.figure import Figure as Canvas  # pyright: ignore
@@ -92,7 +94,7 @@ def _draw(figure: Figure, target: BinaryIO, ending: str, dpi: float, further: di
         # A name in letters that the font lacks is drawn as boxes; a page shows it in a font that has them.
         warnings.filterwarnings("ignore", message="Glyph .* missing from", category=UserWarning)
         stacked = isinstance(figure, Chart) and figure.stacked
-        across = 1 if stacked else min(COLUMNS, len(figure.panels))
+        across = 1 if stacked else min(most_across, len(figure.panels))
         down = ceil(len(figure.panels) / across)
         wide, high = STRIP_INCH if stacked else PANEL_INCH
         canvas: Any = Canvas(figsize=(wide * across, high * down + 0.5), layout="constrained")

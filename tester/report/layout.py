@@ -73,7 +73,9 @@ class ReportTable:
     rows: Sequence[ReportRow]
     note: str = ""
     cards: bool = False
-    """Whether its rows become cards, with the heads beside the cells, on a screen as narrow as a phone's."""
+    """Whether its rows become cards, with the heads beside the cells, on a screen as narrow as a phone's: no column is
+    then out of sight.
+    """
     kind: Literal["table"] = "table"
 
 
@@ -87,7 +89,10 @@ class Columns:
 
 @dataclass(frozen=True, slots=True)
 class Picture:
-    """A drawn figure, which includes its title; ``svg`` is markup that this program made."""
+    """A drawn figure, which includes its title; ``svg`` is markup that this program made.
+
+    ``wide``: it takes the whole width of a page, where two others stand side by side.
+    """
 
     svg: str
     wide: bool = False
@@ -105,6 +110,16 @@ class ReportSection:
     title: str
     parts: Sequence[Part]
 
+    @property
+    def drawn(self) -> bool:
+        """Return whether it has pictures, which share the width of the page."""
+        return any(isinstance(part, Picture) for part in self.parts)
+
+    @property
+    def urgent(self) -> bool:
+        """Return whether one of its sentences reports something bad: such a section is never folded."""
+        return any(isinstance(part, Paragraph | Listing) and part.tone == "bad" for part in self.parts)
+
 
 @dataclass(frozen=True, slots=True)
 class Chapter:
@@ -113,6 +128,8 @@ class Chapter:
     key: str
     title: str
     sections: Sequence[ReportSection]
+    appendix: Sequence[ReportSection] = ()
+    """Sections that a screen folds; paper shows them in full."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -99,7 +99,6 @@ def inline_svg(figure: Figure, key: str) -> str:
     _own_names(root, key)
     width, height = (root.attrib.pop(name).removesuffix("pt") for name in ("width", "height"))
     root.set("viewBox", f"0 0 {width} {height}")
-    root.set("style", f"max-width: {float(width):.0f}pt")
     root.set("role", "img")
     root.set("aria-label", alt_text(figure))
     return ElementTree.tostring(root, encoding="unicode")

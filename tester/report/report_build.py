@@ -82,6 +82,8 @@ def _cover(record: RunRecord, *, several: bool) -> list[Part]:
         else Paragraph("The record was verified: it is as it was left.", "good")
     )
     risk: list[Part] = [Paragraph(f"Risk accepted: {info.risk}", "bad")] if info.risk else []
+    if record.trips:
+        risk.append(Paragraph(f"{counted(len(record.trips), 'trip')} during the run, see Alarms and trips.", "care"))
     meaning = (
         f"± U is the expanded uncertainty: 95 of 100 such intervals hold the value. That of “this {results.worn}” is "
         f"for the {results.worn} that was mounted; that of the compound is for any {results.worn} of it."
@@ -92,10 +94,12 @@ def _cover(record: RunRecord, *, several: bool) -> list[Part]:
 
 def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
     sections = [
-        ran_section(record, f"{key}-ran"),
-        *materials_sections(record, f"{key}-materials"),
         conditions_section(record, f"{key}-conditions"),
         _figures(record, f"{key}-figures", showing),
+    ]
+    appendix = [
+        ran_section(record, f"{key}-ran"),
+        *materials_sections(record, f"{key}-materials"),
         budget_section(record, f"{key}-budgets"),
         drift_section(record, f"{key}-drift"),
         tare_section(record, f"{key}-tares"),
@@ -106,7 +110,7 @@ def _chapter(record: RunRecord, key: str, showing: Showing) -> Chapter:
         assumption_section(record, f"{key}-assumptions"),
         provenance_section(record, f"{key}-provenance"),
     ]
-    return Chapter(key, f"Run {record.name}", sections)
+    return Chapter(key, f"Run {record.name}", sections, appendix)
 
 
 def _figures(record: RunRecord, key: str, showing: Showing) -> ReportSection:

@@ -118,6 +118,7 @@ def trips_section(record: RunRecord, key: str) -> ReportSection:
             for trip in record.trips
         ]  # fmt: skip
         titles = heads("rig time", "time", "interlock", "text", "value and limit", "acknowledged", text=range(6))
+        parts.append(Paragraph(f"{counted(len(record.trips), 'trip')} during the run.", "bad"))
         parts.append(ReportTable("Trips", titles, rows))
     else:
         parts.append(Paragraph("No interlock tripped.", "good"))

@@ -20,13 +20,21 @@ from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 pytestmark = pytest.mark.campaign
 image = pytest.importorskip("matplotlib.image", reason="needs the extra `report`")
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
-SCREEN, PHONE = 1280, 360
+SCREEN, SMALL, PHONE = 1280, 400, 360
 """Widths, px."""
 SCRIPT = "<script>document.title = 'run'</script>"
 FRAME = """<!DOCTYPE html><title>not measured</title><iframe id="f" style="width: {width}px; height: 900px; border: 0"
 srcdoc="{page}"></iframe><script>onload = () => {{
-document.title = document.getElementById("f").contentDocument.documentElement.scrollWidth }}</script>"""
-"""Measures how wide a page is that has ``width`` px: a window of a browser is never as narrow as a phone's."""
+const page = document.getElementById("f").contentDocument;
+const cells = [...page.querySelectorAll("header td[data-head^='U '], #r1-conditions td[data-head^='U ']")];
+const out = cells.filter(one => one.getBoundingClientRect().right > {width} || one.getBoundingClientRect().width < 9);
+const drawn = [...page.querySelectorAll(".drawn")].map(one => one.getBoundingClientRect().width);
+const svgs = [...page.querySelectorAll(".drawn > .wide svg")].map(one => one.getBoundingClientRect().width);
+const narrow = svgs.filter(one => one < drawn[0] - 1);
+document.title = [page.documentElement.scrollWidth, cells.length, out.length, svgs.length, narrow.length].join(" ")
+}}</script>"""
+"""Measures a page that is ``width`` px wide, which no window of a browser is where that is a phone's: how far it
+reaches; cells of U, and those of them out of sight; wide figures, and those of them narrower than their column."""
 POLICY = re.compile(r'<meta http-equiv="Content-Security-Policy"[^>]*>')
 
 
@@ -79,7 +87,7 @@ def title(chromium: str, page: Path, profile: Path) -> str:
     return found[1]
 
 
-@pytest.mark.parametrize("width", [SCREEN, PHONE])
+@pytest.mark.parametrize("width", [SCREEN, SMALL, PHONE])
 def test_a_page_fits_its_screen_and_is_not_empty(
     chromium: str, report: Path, folder: Path, tmp_path: Path, width: int
 ) -> None:
@@ -91,7 +99,10 @@ def test_a_page_fits_its_screen_and_is_not_empty(
     measured = tmp_path / "measured.html"
     text = html.escape(POLICY.sub("", report.read_text(encoding="utf-8")))
     measured.write_text(FRAME.format(width=width, page=text), encoding="utf-8")
-    assert int(title(chromium, measured, tmp_path)) <= width
+    reaches, cells, out, figures, narrow = (int(each) for each in title(chromium, measured, tmp_path).split())
+    assert reaches <= width
+    assert cells > 10 and not out
+    assert figures and not narrow
 
 
 def test_a_script_that_got_in_would_not_run(chromium: str, report: Path, tmp_path: Path) -> None:

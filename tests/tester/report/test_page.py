@@ -40,7 +40,7 @@ HOSTILE = (
     "long" * 5000,
 )
 _ELEMENTS = """html head meta title style body header p h1 h2 h3 dl div dt dd figure figcaption table thead tbody tr
-th td nav ol ul li a main article section footer"""
+th td nav ol ul li a main article section footer details summary"""
 _DRAWN = "svg g path use text defs clipPath rect circle title image"
 ELEMENTS, DRAWN = (frozenset(names.split()) for names in (_ELEMENTS, _DRAWN))
 """Elements that a page may have, of its own and in drawings."""
@@ -100,9 +100,9 @@ def elements(text: str) -> Iterator[ElementTree.Element]:
 def test_a_page_has_every_section_and_what_was_measured(text: str) -> None:
     titles = [one.text for one in elements(text) if one.tag == f"{HTML}h3"]
     assert titles == [
-        "What ran on what",
         "Conditions",
         "Figures",
+        "What ran on what",
         "Uncertainty budgets",
         "Drift, repeats, exclusions",
         "Zeros of the load cell",
@@ -116,6 +116,26 @@ def test_a_page_has_every_section_and_what_was_measured(text: str) -> None:
     assert "Simulated: no rubber and no machine were involved." in text
     assert "No reference condition was measured." in text
     assert "3 of 4 conditions have a value; 1 carries a doubt (carry-over), none carries a note." in text
+
+
+def folded(text: str) -> dict[str | None, bool]:
+    """Return the sections of the appendix by their headings, and whether each is unfolded."""
+    return {
+        next(one.text for one in details.iter() if one.tag == f"{HTML}h3"): details.get("open") is not None
+        for details in elements(text)
+        if details.tag == f"{HTML}details"
+    }
+
+
+def test_a_screen_folds_all_but_conditions_and_figures(plain: RunRecord) -> None:
+    sections = folded(page(replace(plain, verification=replace(plain.verification, problems=()))))
+    assert "Uncertainty budgets" in sections and not {"Conditions", "Figures"} & sections.keys()
+    assert not any(sections.values())
+
+
+def test_a_section_that_reports_something_bad_is_not_folded(plain: RunRecord) -> None:
+    found = replace(plain, verification=replace(plain.verification, problems=("run.db: repeat 1: changed",)))
+    assert [title for title, unfolded in folded(page(found)).items() if unfolded] == ["Where it is from"]
 
 
 @pytest.mark.parametrize("which", ["text", "hostile"])
