@@ -25,18 +25,22 @@ if TYPE_CHECKING:
 )  # fmt: skip
 @click.option("--law", default="", metavar="LAW", help="Draw a published law too: paper or v2.")
 @click.option("--published/--no-published", default=True, show_default=True, help="Points of the paper beside.")
-def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> None:
+@click.option("--xlsx", is_flag=True, help="Also each run's tables as a workbook, RUN.xlsx beside the page.")
+def report(runs: Sequence[str], out: Path | None, law: str, published: bool, xlsx: bool) -> None:
     """Write a report of each RUN into one HTML file: results with their uncertainty, figures, budgets, the record,
     and whether it is unchanged.
 
     The file holds everything, fetches nothing and has no script. A browser prints it, on paper or as PDF. Several runs
-    are compared. The file's name is printed.
+    are compared. The names of the files are printed.
     """
     from tester.report.page import page_of
     from tester.report.report_build import report_of
-    from tester.results.run_files import write_file
+    from tester.results.formats import FORMATS, Record
+    from tester.results.run_files import write_file, write_format
+    from tester.store.run_reader import RunReader
 
-    records = [_record(run_folder(name)) for name in dict.fromkeys(runs)]
+    folders = [run_folder(name) for name in dict.fromkeys(runs)]
+    records = [_record(folder) for folder in folders]
 
     def showing(record: RunRecord) -> Material:
         return material_of(record.results, law, published)
@@ -46,6 +50,11 @@ def report(runs: Sequence[str], out: Path | None, law: str, published: bool) -> 
     path.parent.mkdir(parents=True, exist_ok=True)
     write_file(path, [page.encode()])
     click.echo(path)
+    for folder in folders if xlsx else ():
+        book = path.parent / f"{folder.name}.xlsx"
+        with RunReader(folder) as reader:
+            write_format(book, FORMATS["xlsx"], Record(reader))
+        click.echo(book)
 
 
 def _record(folder: Path) -> RunRecord:

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import BinaryIO
+from typing import BinaryIO, TypeAlias
 
 from tester.base.plugins import PluginError, plugins
 from tester.results.budget_table import budget_table
@@ -22,6 +22,7 @@ from tester.results.run_results import RunResults, results_of
 from tester.results.stiffness_table import shows_stiffness, stiffness_table
 from tester.results.table_cells import Cell, encode
 from tester.results.tables import appendix_rows, condition_rows, marked, sample_rows
+from tester.results.workbook import Sheet, write_workbook
 from tester.store.run_reader import RunReader
 
 
@@ -61,19 +62,39 @@ class Format:
     """Whether it may be written to a terminal."""
     remarks: Callable[[Record], Iterable[str]] = field(default=_no_remarks, kw_only=True)
     """Yields remarks for the reader of the file, a line each."""
+    rows: Rows | None = field(default=None, kw_only=True)
+    """The rows of a table, headings first, which a workbook shows too; None for a format that is no table."""
 
 
-def _csv(
-    rows: Callable[[Record], Iterator[tuple[Cell, ...]]], *, bom: bool = False, risk: bool = True
-) -> Callable[[Record, BinaryIO], None]:
-    """Return the writer of a table in UTF-8. ``bom``: after a byte order mark; ``risk``: with the risk as last column.
+Rows: TypeAlias = Callable[[Record], Iterator[tuple[Cell, ...]]]
+
+
+def _table(
+    name: str, title: str, rows: Rows, kept: Callable[[RunResults], bool] | None = None, *, bom: bool = False,
+    risk: bool = True, remarks: Callable[[Record], Iterable[str]] = _no_remarks,
+) -> Format:  # fmt: skip
+    """Return the format of a table as CSV in UTF-8. ``bom``: after a byte order mark; ``risk``: with the risk as last
+    column.
     """
 
-    def write(record: Record, file: BinaryIO) -> None:
-        made = rows(record)
-        file.writelines(encode(marked(made, record.reader.run().info) if risk else made, bom=bom))
+    def all_rows(record: Record) -> Iterator[tuple[Cell, ...]]:
+        return marked(rows(record), record.reader.run().info) if risk else rows(record)
 
-    return write
+    def write(record: Record, file: BinaryIO) -> None:
+        file.writelines(encode(all_rows(record), bom=bom))
+
+    return Format(name, f"{name}.csv", title, write, kept, remarks=remarks, rows=all_rows)
+
+
+def _workbook(record: Record, file: BinaryIO) -> None:
+    """Write every table that the run's folder keeps."""
+    write_workbook(_sheets(record), record.reader.run().info.started_utc, file)
+
+
+def _sheets(record: Record) -> Iterator[Sheet]:
+    for one in FORMATS.values():
+        if one.rows is not None and one.kept is not None and one.kept(record.results):
+            yield one.name, one.rows(record)
 
 
 def _of_paper(record: Record) -> Iterator[str]:
@@ -94,30 +115,29 @@ _WHEEL = "wheel"
 FORMATS: dict[str, Format] = {
     one.name: one
     for one in (
-        Format("appendix", "appendix.csv", "the paper's table",
-               _csv(lambda record: appendix_rows(record.results, record.decimals), bom=True), _always,
-               remarks=_of_paper),
-        Format("conditions", "conditions.csv", "conditions with uncertainty",
-               _csv(lambda record: condition_rows(record.results), risk=False), _always),
-        Format("budget", "budget.csv", "what each uncertainty is made of",
-               _csv(lambda record: budget_table(record.results).csv()), _always),
-        Format("directions", "directions.csv", "what each direction of sliding shows, and the cell's angle",
-               _csv(lambda record: directions_table(record.results).csv()), lambda results: results.both_directions),
-        Format("repeats", "repeats.csv", "every repeat",
-               _csv(lambda record: repeats_table(record.results).csv()), _always),
-        Format(_WHEEL, f"{_WHEEL}.csv", f"{_WHEEL}s and their wear",
-               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn == _WHEEL),
-        Format("pieces", "pieces.csv", "what was mounted, and its wear",
-               _csv(lambda record: pieces_table(record.results).csv()), lambda results: results.worn != _WHEEL),
-        Format("wear", "wear.csv", "checks of diameters", _csv(lambda record: checks_table(record.results).csv()),
+        _table("appendix", "the paper's table", lambda record: appendix_rows(record.results, record.decimals), _always,
+               bom=True, remarks=_of_paper),
+        _table("conditions", "conditions with uncertainty", lambda record: condition_rows(record.results), _always,
+               risk=False),
+        _table("budget", "what each uncertainty is made of", lambda record: budget_table(record.results).csv(),
+               _always),
+        _table("directions", "what each direction of sliding shows, and the cell's angle",
+               lambda record: directions_table(record.results).csv(), lambda results: results.both_directions),
+        _table("repeats", "every repeat", lambda record: repeats_table(record.results).csv(), _always),
+        _table(_WHEEL, f"{_WHEEL}s and their wear", lambda record: pieces_table(record.results).csv(),
+               lambda results: results.worn == _WHEEL),
+        _table("pieces", "what was mounted, and its wear", lambda record: pieces_table(record.results).csv(),
+               lambda results: results.worn != _WHEEL),
+        _table("wear", "checks of diameters", lambda record: checks_table(record.results).csv(),
                lambda results: bool(results.checks)),
-        Format("reference", "reference.csv", "reference conditions, with limits and drift",
-               _csv(lambda record: references_table(record.results).csv()), lambda results: results.watch is not None),
-        Format("settings", "settings.csv", "settings that were measured several times, and whether they agree",
-               _csv(lambda record: settings_table(record.results).csv()), lambda results: bool(results.settings)),
-        Format("stiffness", "stiffness.csv", "deformation and stiffness, softening, relaxation",
-               _csv(lambda record: stiffness_table(record.results, record.reader).csv()), shows_stiffness),
-        Format("samples", "samples.csv", "every sample", _csv(lambda record: sample_rows(record.reader))),
+        _table("reference", "reference conditions, with limits and drift",
+               lambda record: references_table(record.results).csv(), lambda results: results.watch is not None),
+        _table("settings", "settings that were measured several times, and whether they agree",
+               lambda record: settings_table(record.results).csv(), lambda results: bool(results.settings)),
+        _table("stiffness", "deformation and stiffness, softening, relaxation",
+               lambda record: stiffness_table(record.results, record.reader).csv(), shows_stiffness),
+        _table("samples", "every sample", lambda record: sample_rows(record.reader)),
+        Format("xlsx", "tables.xlsx", "these tables but samples, as one workbook", _workbook, is_text=False),
         Format("parquet", "samples.parquet", "every sample, for programs",
                lambda record, file: write_parquet(record.reader, file), is_text=False),
     )

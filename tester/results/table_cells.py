@@ -31,7 +31,12 @@ def text(value: str) -> str:
     """Return a text cell, escaped where it could be taken for a formula; characters that could steer a terminal become
     ``?``."""
     value = harmless(value)
-    return f"'{value}" if value[:1] in _FORMULA and value else value
+    return f"'{value}" if begins_like_a_formula(value) else value
+
+
+def begins_like_a_formula(value: str) -> bool:
+    """Return whether a spreadsheet could take a text for a formula, or its apostrophe for a mark of text."""
+    return value[:1] in _FORMULA and bool(value)
 
 
 def number(value: float | None) -> Number:

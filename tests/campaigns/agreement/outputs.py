@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import partial
 from itertools import pairwise
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from traceback import extract_tb
 
 from tests.campaigns.agreement.call import CallError, called
@@ -13,7 +14,7 @@ from tests.campaigns.agreement.facts import Facts
 from tests.campaigns.agreement.read_figures import canvases, read_canvases
 from tests.campaigns.agreement.read_json import read_compare_json, read_events, read_runs_json, read_show_json, times_of
 from tests.campaigns.agreement.read_page import read_page
-from tests.campaigns.agreement.read_tables import read_table, sweep_facts
+from tests.campaigns.agreement.read_tables import read_table, sheets_of, sweep_facts
 from tests.campaigns.agreement.read_text import read_budget, read_compare, read_ending, read_runs, read_show
 from tests.campaigns.agreement.record import Record, read_record
 from tests.campaigns.agreement.runs import Made
@@ -77,6 +78,13 @@ def _tables(record: Record, worn: str) -> Iterator[Facts]:
         kept = record.folder / f"{name}.csv"
         if kept.is_file():
             yield read_table(record, worn, name, kept.read_text("utf-8"), kept.name)
+    with TemporaryDirectory() as folder:
+        book = Path(folder) / "tables.xlsx"
+        called("export", str(record.folder), "--format", "xlsx", "--out", str(book))
+        sheets = sheets_of(book)
+    for name in FORMATS:
+        if name in sheets and name != "appendix":  # a cell has no trailing zeros, by which its digits could be told
+            yield read_table(record, worn, name, sheets[name], f"xlsx {name}")
 
 
 def _ending(folder: Path) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from collections.abc import Iterable
 from io import StringIO
+from pathlib import Path
 
 from tests.campaigns.agreement.facts import Facts, Subject
 from tests.campaigns.agreement.names import MARK, quantity_of
@@ -24,6 +25,18 @@ def rows_of(text: str) -> tuple[list[str], list[list[str]]]:
     """Return the headings and the rows of a CSV text."""
     lines = list(csv.reader(StringIO(text.removeprefix("\ufeff"))))
     return lines[0], lines[1:]
+
+
+def sheets_of(path: Path) -> dict[str, str]:
+    """Return the sheets of a workbook as CSV texts, by name."""
+    from openpyxl import load_workbook
+
+    found: dict[str, str] = {}
+    for sheet in load_workbook(path, read_only=True).worksheets:
+        written = StringIO()
+        csv.writer(written, lineterminator="\n").writerows(sheet.iter_rows(values_only=True))
+        found[sheet.title] = written.getvalue()
+    return found
 
 
 def read_table(record: Record, worn: str, name: str, text: str, output: str) -> Facts:

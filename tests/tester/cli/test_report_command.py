@@ -86,3 +86,13 @@ def test_without_the_extra_the_line_that_installs_it_is_named(
     monkeypatch.setitem(sys.modules, library, None)
     assert 'pip install "friction-tester[report]"' in out(capsys, "one", code=2)
     assert not (home / "reports").exists()
+
+
+def test_a_report_comes_with_a_workbook_of_each_run_where_that_is_asked_for(
+    home: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
+    made_run(home / "runs" / "two", [(25.0, 100.0, 0.3)])
+    printed = out(capsys, "one", "two", "--xlsx").splitlines()
+    assert printed == [str(Path("reports") / name) for name in ("one.html", "one.xlsx", "two.xlsx")]
+    assert all((home / name).read_bytes()[:2] == b"PK" for name in printed[1:])
