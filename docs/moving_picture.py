@@ -13,8 +13,8 @@ import sys
 from pathlib import Path
 from tempfile import TemporaryDirectory
 
-from PIL import Image
 from pictures import FONTS, MOMENT, SIZE, finished_run, settle
+from PIL import Image
 from playwright.async_api import async_playwright
 
 from tester.base import clock

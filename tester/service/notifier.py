@@ -12,15 +12,13 @@ from tester.base import clock
 from tester.base.words import conditions_done
 from tester.notices import causes
 from tester.notices.notice import NextNeeded, Notice, NoticeOver
+from tester.queue.recover import end_of
 from tester.service.gateway_link import GatewayLink
 from tester.service.state_view import PromptView, RunView
 from tester.service.values import PlanTrack
 from tester.store.run_folders import RunStatus
 
 HOLD: Final = "HOLD"
-OUTCOMES: Final = {RunStatus.DONE: "done", RunStatus.INCOMPLETE: "short", RunStatus.STOPPED: "stopped",
-                   RunStatus.TRIPPED: "tripped"}  # fmt: skip
-"""Ends of runs as notices name them; any other is "failed"."""
 LOST: Final = ("condition", "warning")
 """Kind and severity of the event of a condition without a value."""
 NOTHING: Final = NextNeeded("no run is under way")
@@ -110,17 +108,13 @@ class Notifier:
         The end of a run by a trip has the trip's key: that notice has been sent.
         """
         self.run = view
-        outcome = OUTCOMES.get(RunStatus(view.outcome), "failed")
+        outcome = end_of(RunStatus(view.outcome)).value
         if (item := self.item_of(view)) is not None:
             notice = self._item(item, outcome, view)
         else:
             notice = causes.run_ended(self._number(), text, clock.utc_now(), outcome, rig=self._rig, run=view.name,
                                       folder=view.folder)  # fmt: skip
         self._gateway.notify(replace(notice, key=self._trip_key) if outcome == "tripped" and self._trip_key else notice)
-
-    def item_ended(self, item: ItemEnd, outcome: str, view: RunView) -> None:
-        """Make a notice of an item that ended without a run. ``view``: its name and folder may be empty."""
-        self._gateway.notify(self._item(item, outcome, view))
 
     def next(self, track: PlanTrack | None, lapse: float | None) -> None:
         """Tell when a run will need a person. ``lapse``: rig seconds per second, None if unknown."""

@@ -39,6 +39,7 @@ from tester.service.commands import (
 )
 from tester.service.gateway_link import GatewayLink
 from tester.service.interrupted import interrupted_runs, is_interrupted
+from tester.service.item_notice import item_end
 from tester.service.preflight import left_on_rig, past_of
 from tester.service.queue_desk import QueueDesk, QueueRig
 from tester.service.running import LOOK_S, RunScreen, ServiceSession, aside, open_record
@@ -88,6 +89,7 @@ class Service:
         self.orders = Orders(self.desk)
         rig = QueueRig(options.rig, options.overrides, options.accept_risk, options.runs)
         self.queue = self.orders.queue = QueueDesk(self.desk, rig, self.orders.skip, self._busy)
+        self.desk.notices.item_of = lambda view: item_end(self.queue.queue, view, latched=bool(self.desk.latched))
         self._look_due_s = 0.0
 
     # -- the loop ---------------------------------------------------------------------------------------------
