@@ -63,7 +63,9 @@ def add(
     except recipes.UnknownRecipe as error:
         raise click.UsageError(str(error)) from error
     packaged = path.parent == recipes.FOLDER and Path(recipe) != path
-    ends = tuple(_end(word.strip()) for word in after.split(",") if word.strip())
+    ends: tuple[Literal["done", "short", "failed"], ...] = tuple(
+        _end(word.strip()) for word in after.split(",") if word.strip()
+    )
     where = recipe if packaged else str(path.absolute())
     action = QueueAdd(where, "", overrides, seed, speed, yes, operator, notes, ends)
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 import hmac
-import json
 import re
 import secrets
 from collections.abc import Iterator
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass, replace
 from datetime import UTC, datetime
 from hashlib import sha256
 from pathlib import Path
-from typing import Final, cast
+from typing import Final
+
+from pydantic import TypeAdapter
 
 from tester.base import clock
 from tester.base.words import plain_text
@@ -92,6 +93,9 @@ class CalendarKey:
     revoked_utc: str = ""
 
 
+_KEYS: Final[TypeAdapter[list[CalendarKey]]] = TypeAdapter(list[CalendarKey])
+
+
 def _file(runs: Path) -> Path:
     return runs / FOLDER / KEYS
 
@@ -99,11 +103,10 @@ def _file(runs: Path) -> Path:
 def calendar_keys(runs: Path) -> list[CalendarKey]:
     """Return the keys that were made, also revoked ones. Raises QueueError for a file that cannot be read."""
     try:
-        rows = cast("list[dict[str, str]]", json.loads(_file(runs).read_text(encoding="utf-8")))
-        return [CalendarKey(int(row["number"]), **{k: str(v) for k, v in row.items() if k != "number"}) for row in rows]
+        return _KEYS.validate_json(_file(runs).read_bytes())
     except FileNotFoundError:
         return []
-    except (OSError, ValueError, TypeError, KeyError, AttributeError) as error:
+    except (OSError, ValueError) as error:
         raise QueueError(f"{_file(runs)} cannot be read: {error}") from error
 
 
@@ -128,7 +131,7 @@ def revoke_key(runs: Path, number: int) -> None:
     if not any(one.number == number and not one.revoked_utc for one in known):
         raise QueueError(f"there is no key {number} that counts: `tester queue key --list` lists them")
     now = clock.utc_now()
-    _write(runs, [CalendarKey(**asdict(one) | {"revoked_utc": now}) if one.number == number else one for one in known])
+    _write(runs, [replace(one, revoked_utc=now) if one.number == number else one for one in known])
 
 
 def key_valid(runs: Path, key: str) -> bool:
@@ -155,6 +158,6 @@ def _write(runs: Path, keys: list[CalendarKey]) -> None:
     def fill(part: Path) -> None:
         part.touch(mode=0o600)
         part.chmod(0o600)
-        part.write_text(json.dumps([asdict(one) for one in keys], indent=1), encoding="utf-8")
+        part.write_bytes(_KEYS.dump_json(keys, indent=1))
 
     write_whole(path, fill)

@@ -88,10 +88,7 @@ def waits(queue: Queue) -> Wait | None:
         return Wait(f"item {now.item.id} {'runs' if now.run else 'begins'}")
     if not queue.going:
         return Wait(f"standing: {queue.why}")
-    if queue.next is None:
-        skipped = len(queue.listed)
-        return Wait("empty" if not skipped else f"every item left is skipped ({skipped}): move one to let it run")
-    return None
+    return None if queue.next is not None else Wait("no item waits")
 
 
 def _failed(check: Check | None, name: str) -> tuple[str, str]:

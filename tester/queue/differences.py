@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from typing import Final
+from typing import Final, cast
 
 from tester.base.source import InvalidSource, load_tree
 from tester.queue.items import Hashes
@@ -44,7 +44,7 @@ def rig_differences(then: str, now: str) -> list[str]:
 
 def _flat(value: object, key: str = "") -> Iterator[tuple[str, str]]:
     if isinstance(value, dict):
-        for name, inner in value.items():  # pyright: ignore[reportUnknownVariableType]
+        for name, inner in cast("dict[object, object]", value).items():
             yield from _flat(inner, f"{key}.{name}" if key else f"{name}")
     else:
         yield key, str(value)

@@ -26,6 +26,7 @@ from tester.queue.items import MAY_GO_ON, End, Hashes, ItemState, QueueItem
 
 MOST_WAITING: Final = 200
 """Greatest number of items that wait or are skipped [A]: months of work; a prediction of them takes milliseconds."""
+AT_END: Final = "no item waits"
 NEVER_STARTED: Final = "not started yet"
 
 
@@ -120,6 +121,8 @@ def applied(queue: Queue, recorded: QueueLine) -> Queue:
         raise QueueError(f"event {recorded.n} does not follow event {queue.revision}")
     what = recorded.what
     changed = _CHANGES.get(type(what), _stood)(queue, what, recorded.utc)
+    if changed.going and changed.under_way is None and changed.next is None:
+        changed = replace(changed, going=False, why=AT_END)  # an item added later must not begin by being added
     return replace(changed, revision=recorded.n, utc=recorded.utc)
 
 
@@ -217,6 +220,8 @@ def goes_on(entry: QueueEntry, *, stands: bool) -> bool:
 def _started(queue: Queue, what: QueueStarted, utc: str) -> Queue:
     if queue.going:
         raise QueueError("the queue is started already")
+    if queue.next is None:
+        raise QueueError("no item waits: add one, or move one that is skipped")
     return replace(queue, going=True, why="")
 
 

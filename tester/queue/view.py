@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
-from datetime import datetime, timedelta
+from datetime import UTC, datetime, timedelta
 from typing import Final
 
 from tester.queue.fold import Queue, QueueEntry
@@ -81,27 +80,28 @@ def view_of(queue: Queue, state: str, now_utc: str, left_s: float | None = None,
     over = [entry for entry in queue.entries if entry.state.over][-OVER_SHOWN:]
     items = tuple(_item(entry, times.get(entry.item.id), now, left_s) for entry in (*over, *queue.listed))
     last = max(times.values(), key=lambda one: one.end_s, default=None)
-    ends = _ends(last, now)
-    return QueueView(queue.revision, queue.going, state or "unknown", now_utc, items, *ends, problem)
+    end, low, high = _ends(last, now)
+    return QueueView(queue.revision, queue.going, state or "unknown", now_utc, items, end, low, high, problem)
 
 
 def _item(entry: QueueEntry, times: Times | None, now: datetime, left_s: float | None) -> ItemView:
     item, needs = entry.item, entry.item.needs
     start = "" if times is None else entry.began_utc or stamp(now, times.start_s)
+    end, low, high = _ends(times, now)
     return ItemView(
         item.id, item.name, entry.state, item.by, item.utc, item.sha256, item.origin, needs.conditions,
         round(needs.seconds, 1), round(needs.low_s, 1), round(needs.high_s, 1), needs.asks, item.after, entry.end,
-        entry.reason, entry.run, entry.began_utc, entry.ended_utc, start, *_ends(times, now), item.operator,
-        item.overrides, left_s if entry.state.under_way else None,
+        entry.reason, entry.run, entry.began_utc, entry.ended_utc, start, end, low, high, item.operator, item.overrides,
+        left_s if entry.state.under_way else None,
     )  # fmt: skip
 
 
-def _ends(times: Times | None, now: datetime) -> Sequence[str]:
+def _ends(times: Times | None, now: datetime) -> tuple[str, str, str]:
     if times is None:
         return "", "", ""
     return stamp(now, times.end_s), stamp(now, times.low_s), stamp(now, times.high_s)
 
 
 def stamp(now: datetime, seconds: float) -> str:
-    """Return the time ``seconds`` after ``now`` as ISO 8601 text in UTC."""
-    return (now + timedelta(seconds=round(seconds))).isoformat(timespec="seconds").replace("+00:00", "Z")
+    """Return the time ``seconds`` after ``now``, to the nearest second, as ISO 8601 text in UTC."""
+    return (now + timedelta(seconds=seconds + 0.5)).astimezone(UTC).isoformat(timespec="seconds").replace("+00:00", "Z")

@@ -106,6 +106,16 @@ def test_an_impossible_change_is_refused_with_its_reason(event: QueueEvent, reas
         queue_of(event, start=queue_of(*RUNS))
 
 
+def test_after_the_last_item_the_queue_stands_and_an_added_item_does_not_begin() -> None:
+    queue = queue_of(ItemAdded(item(1)), *RUNS[2:], ItemEnded(1, End.DONE, "", "run-1"), ItemAdded(item(2)))
+    assert (queue.going, queue.why) == (False, "no item waits")
+
+
+def test_a_queue_in_which_no_item_waits_is_not_started() -> None:
+    with pytest.raises(QueueError, match="no item waits"):
+        queue_of(*TWO, ItemSkipped(1, "anna"), ItemSkipped(2, "anna"), QueueStarted("anna"))
+
+
 def test_nothing_is_taken_while_the_queue_stands() -> None:
     with pytest.raises(QueueError, match="the queue stands: not started yet"):
         queue_of(*TWO, ItemTaken(1))

@@ -77,7 +77,7 @@ def test_two_items_run_one_after_the_other(tmp_path: Path) -> None:
 
     stage = play(tmp_path, script)
     last = stage.queues[-1]
-    assert (states(last), last.going, last.state) == ([(1, "done"), (2, "done")], True, "empty")
+    assert (states(last), last.going, last.state) == ([(1, "done"), (2, "done")], False, "standing: no item waits")
     assert [item_of(stage, number).run for number in (1, 2)] == runs(tmp_path)
     assert all(view.state for view in stage.queues)
 
@@ -253,6 +253,7 @@ def test_a_person_cannot_agree_to_what_is_not_known(tmp_path: Path) -> None:
 
 def test_no_other_run_begins_while_the_queue_goes(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
+        yield from added(stage, ADD)
         yield stage.order(QueueStart())
         yield from answered(stage, "queue_start")
         yield stage.order(RunRecipe("short", text=SHORT, speed=None, yes=True))
