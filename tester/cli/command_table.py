@@ -32,6 +32,14 @@ BUS = CommandGroup(
         "eds": CommandEntry("eds_command", "eds", "Check a drive's data sheet against an axis."),
     },
 )
+NOTICES = CommandGroup(
+    "Notices to people: check, test, list.",
+    {
+        "check": CommandEntry("notices_commands", "check", "Validate the settings; which cause goes where."),
+        "test": CommandEntry("notices_commands", "trial", "Send a test by every channel."),
+        "list": CommandEntry("notices_commands", "list_", "List the notices that wait."),
+    },
+)
 RESULTS = CommandGroup(
     "Stored results: exclude, include, note, slip-ring.",
     {
@@ -99,6 +107,7 @@ SECTIONS: Mapping[str, Mapping[str, Listed]] = {
         "hold": CommandEntry("service_commands", "hold", "HOLD: lift, wait, keep the temperature."),
         "release": CommandEntry("service_commands", "release", "End a HOLD."),
         "ack": CommandEntry("service_commands", "ack", "Acknowledge alarms; this moves nothing."),
+        "notices": NOTICES,
         "stop": CommandEntry("stop_command", "stop", "STOP the rig."),
     },
     "Files": {

@@ -41,7 +41,7 @@ take_option = click.option("--take", is_flag=True, help="Take control from the c
 @click.option("--allow", "allowed", multiple=True, metavar="NAME",
               help="Extension that may be loaded: entry point or package.module:object.")  # fmt: skip
 @click.option("--notify", default="", metavar="COMMAND",
-              help="Command to run on a trip, hold, prompt, end or full disk; JSON on its standard input.")  # fmt: skip
+              help="Command to run for every notice; it gets JSON on its standard input.")  # fmt: skip
 def serve(rig: RigChoice, out: Path, address: str, port: int | None, allowed: tuple[str, ...], notify: str) -> int:
     """Own the rig and run what clients ask for. Runs continue when they disconnect.
 
