@@ -44,6 +44,13 @@ class DataWorker:
         finally:
             self._waiting -= 1
 
+    async def warm(self) -> None:
+        """Start the process in advance. A failure shows with the first question."""
+        async with self._lock:
+            if self._streams is None:
+                with suppress(OSError):
+                    await self._start()
+
     async def _asked(self, request: bytes) -> bytes:
         try:
             async with asyncio.timeout(WITHIN_S):

@@ -5,14 +5,15 @@ No page delays another one or the link: each has its own queue of answers and ev
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 
 from tester.page.front import to_front
 from tester.page.visitor import Visitor
 from tester.service.address import Address
 from tester.service.client import Client, Link, Lost
-from tester.service.protocol import VERSION, Event, Hello, ServerMessage, encode
+from tester.service.protocol import VERSION, Event, Hello, PlanMessage, ServerMessage, Snapshot, encode
+from tester.service.state_view import RunView
 
 NAME = "page"
 """Name of the page process at the service; what a page commands is sent under the page's own name."""
@@ -27,8 +28,12 @@ class Hub:
         self.link = Link(address, name=NAME)
         self.visitors: list[Visitor] = []
         self._hello: Hello | None = None
-        self._machine = b""
+        self._newest: dict[str, bytes] = {}
+        """The newest message of each kind that is not in ``Client``, for pages that enter later."""
         self._lost = "not connected yet"
+        self._running = ""
+        self.run_ended: Callable[[str], None] = lambda _: None
+        """Called with the name of a run that has ended."""
 
     async def relay(self) -> None:
         """Send the service's messages to the pages, without end."""
@@ -45,10 +50,13 @@ class Hub:
             return
         if isinstance(message, Hello):
             self._lost, self._hello = "", message
+            self._newest.clear()
             for visitor in self.visitors:
                 self._greet(visitor)
             return
         wrapped = self._wrapped(message)
+        if isinstance(message, Snapshot):
+            self._look_for_an_end(message.state.run)
         if isinstance(message, Event):
             for visitor in self.visitors:
                 if message.seq > visitor.seen:
@@ -58,8 +66,16 @@ class Hub:
             for visitor in self.visitors:
                 visitor.outbox.reply(wrapped)
         else:
+            if not isinstance(message, Snapshot | PlanMessage):
+                self._newest[message.type] = wrapped
             for visitor in self.visitors:
                 visitor.outbox.newest(message.type, wrapped)
+
+    def _look_for_an_end(self, run: RunView | None) -> None:
+        name = run.name if run is not None and run.exit is None and run.folder else ""
+        if self._running and name != self._running:
+            self.run_ended(self._running)
+        self._running = name
 
     def enter(self, visitor: Visitor) -> None:
         """Add a page, and send it the present state."""
@@ -82,6 +98,8 @@ class Hub:
             hello = present(self._hello, client)
             visitor.seen = hello.events[-1].seq if hello.events else 0
             visitor.outbox.reply(self._wrapped(hello))
+            for kind, wrapped in self._newest.items():
+                visitor.outbox.newest(kind, wrapped)
 
     def _link(self) -> bytes:
         return to_front("link", connected=not self._lost, reason=self._lost)

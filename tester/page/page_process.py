@@ -41,7 +41,9 @@ LOG = "tester.page"
 
 @dataclass(frozen=True, slots=True)
 class PageOptions:
-    """Options of `tester page`. ``lan``: a further address to listen at, "" for none; ``role``: of the first code."""
+    """Options of `tester page`. ``lan``: a further address to listen at, "" for none; ``role``: of the first code;
+    ``warm``: whether the process that reads stored runs starts before the first question.
+    """
 
     port: int = 8010
     lan: str = ""
@@ -51,6 +53,7 @@ class PageOptions:
     origins: tuple[str, ...] = ()
     runs: Path = Path("runs")
     address: Address | None = None
+    warm: bool = True
 
     @property
     def greatest(self) -> Role:
@@ -104,6 +107,9 @@ async def host_page(options: PageOptions, write: Callable[[str], object], began:
     pairings = Pairings(options.greatest)
     hub, tickets = Hub(options.address), Tickets()
     async with Questions(options.runs, pairings, tickets) as questions:
+        hub.run_ended = questions.prepare
+        if options.warm:
+            questions.warm()
         reception = Reception(pairings, hub, origins, static_files(), tickets, questions.answer)
         desk = PageDesk(reception, f"{scheme}://{addresses[-1]}:{options.port}/")
         terminal = PageTerminal(desk, write)

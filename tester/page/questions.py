@@ -11,6 +11,7 @@ import os
 import re
 import subprocess
 import tempfile
+from collections.abc import Coroutine
 from contextlib import suppress
 from pathlib import Path
 from typing import Final, NamedTuple
@@ -26,7 +27,7 @@ from tester.page.front import PageQuestion
 from tester.page.pairing import Pairing, Pairings
 from tester.page.reception import AskError
 from tester.page.roles import includes
-from tester.page.stored.asked import ASKED, WRITING
+from tester.page.stored.asked import ASKED, PREPARE, WRITING
 
 WITHIN_S = 120.0
 """Time for writing a download, s [A]: a report of 165 conditions takes 20 s."""
@@ -62,12 +63,33 @@ class Questions:
         self._tickets = tickets
         self._reading, self._writing = DataWorker(runs), DataWorker(runs)
         self._downloads = asyncio.Semaphore(1)
+        self._tasks: set[asyncio.Task[None]] = set()
 
     async def __aenter__(self) -> Questions:
         return self
 
+    def warm(self) -> None:
+        """Start the reading process, which takes a second, before the first question."""
+        self._start(self._reading.warm())
+
+    def prepare(self, run: str) -> None:
+        """Make what the pictures of a run that has ended need, without waiting."""
+        self._start(self._prepared(run))
+
+    def _start(self, work: Coroutine[None, None, None]) -> None:
+        task = asyncio.create_task(work)
+        self._tasks.add(task)
+        task.add_done_callback(self._tasks.discard)
+
+    async def _prepared(self, run: str) -> None:
+        with suppress(AskError, TimeoutError):  # the first picture then makes it
+            await self._writing.ask(PREPARE, {"run": run}, "")
+
     async def __aexit__(self, *_: object) -> None:
         """End the processes."""
+        for task in self._tasks:
+            task.cancel()
+        await asyncio.gather(*self._tasks, return_exceptions=True)
         self._reading.close()
         self._writing.close()
 
@@ -78,7 +100,7 @@ class Questions:
             return to_json({"pairings": self._listed()})
         if name == "ticket":
             return to_json({"path": self._tickets.issue(await self._download(question.rest))})
-        if name not in ASKED:
+        if name not in ASKED or name == PREPARE:
             raise AskError(f"no question {name!r}")
         if name in WRITING and not includes(pairing.role, "control"):
             raise AskError(f"{name} needs the role control, and this page has {pairing.role}")

@@ -162,6 +162,12 @@ def _packed(values: NDArray[Any], form: str) -> str:
     return b64encode(np.ascontiguousarray(values, dtype=form).tobytes()).decode()
 
 
+def _prepare(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Json]:
+    with RunReader(cache.folder(asked.run)) as reader:
+        cache.pyramid(reader)
+    return {}
+
+
 def _moment(cache: RunCache, asked: AskMoment, _by: str) -> dict[str, Json]:
     folder = cache.folder(asked.run)
     with RunReader(folder) as reader:
@@ -204,8 +210,11 @@ ASKED: Final[Mapping[str, Asked]] = {
     "overlay": (TypeAdapter(AskOverlay), _overlay),
     "exclude": (TypeAdapter(AskExclude), _exclude),
     "note": (TypeAdapter(AskNote), _note),
+    "prepare": (TypeAdapter(AskRun), _prepare),
 }
 """The questions, each with its keys and the function that  answers it."""
+PREPARE: Final = "prepare"
+"""Asked by the page process itself once a run has ended, so that its first picture need not wait for the pyramid."""
 WRITING: Final = ("exclude", "note")
 """Those that write on record: they need the role control."""
 

@@ -14,14 +14,15 @@ from tests.campaigns.agreement.facts import Facts
 from tests.campaigns.agreement.read_figures import canvases, read_canvases
 from tests.campaigns.agreement.read_json import read_compare_json, read_events, read_runs_json, read_show_json, times_of
 from tests.campaigns.agreement.read_page import read_page
+from tests.campaigns.agreement.read_stored import read_stored
 from tests.campaigns.agreement.read_tables import read_table, sheets_of, sweep_facts
 from tests.campaigns.agreement.read_text import read_budget, read_compare, read_ending, read_runs, read_show
 from tests.campaigns.agreement.record import Record, read_record
 from tests.campaigns.agreement.runs import Made
 from tests.campaigns.agreement.screens import screens
 
-COMMANDS, TABLES, REPORT, SCREENS = "commands", "tables", "report", "screens"
-PARTS = (COMMANDS, TABLES, REPORT, SCREENS)
+COMMANDS, TABLES, REPORT, SCREENS, PAGE = "commands", "tables", "report", "screens", "page"
+PARTS = (COMMANDS, TABLES, REPORT, SCREENS, PAGE)
 """Outputs of one run, by how they are made."""
 SEVERAL = "several"
 """Outputs that hold runs against each other."""
@@ -41,6 +42,7 @@ def facts_of(made: Made, reports: Path, parts: Sequence[str] = PARTS) -> Iterato
         TABLES: partial(_tables, record, worn),
         REPORT: partial(_report, [record], page, "report"),
         SCREENS: partial(screens, record, worn),
+        PAGE: partial(_stored, record),
     }
     for name in parts:
         if name in readers:
@@ -85,6 +87,10 @@ def _tables(record: Record, worn: str) -> Iterator[Facts]:
     for name in FORMATS:
         if name in sheets and name != "appendix":  # a cell has no trailing zeros, by which its digits could be told
             yield read_table(record, worn, name, sheets[name], f"xlsx {name}")
+
+
+def _stored(record: Record) -> Iterator[Facts]:
+    yield read_stored(record, "page in a browser")
 
 
 def _ending(folder: Path) -> list[str]:

@@ -86,7 +86,8 @@ class PageStage:
     async def __aenter__(self) -> PageStage:
         await self._stack.enter_async_context(self.fake)
         began = asyncio.Event()
-        options = PageOptions(self.port, address=self.fake.address, runs=self.folder / "runs", **self._options)
+        there = {"address": self.fake.address, "runs": self.folder / "runs", "warm": False}
+        options = PageOptions(self.port, **there, **self._options)
         task = asyncio.create_task(host_page(options, self.printed.append, began))
         self._stack.push_async_callback(self._end, task)
         waiting = asyncio.create_task(began.wait())

@@ -19,7 +19,10 @@ def classes() -> list[type[Any]]:
     return list(get_args(union))
 
 
-FILLED = {"recipe": "quickstart", "run": "r", "axis": "press", "direction": 1, "number": 1}
+FILLED = {
+    "recipe": "quickstart", "run": "r", "axis": "press", "direction": 1, "number": 1, "id": 1, "revision": 1,
+    "start": "18:00", "end": "08:00",
+}  # fmt: skip
 
 
 def made(command: type[Any]) -> Any:

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from tester.page.questions import Questions
 from tests.tester.page.stage import PageStage
 from tests.tester.page.test_reception import play
+from tests.tester.service.views import state
 from tests.tester.store.build import RUN, small_run
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the fake service listens at a Unix socket")
@@ -47,8 +50,11 @@ def test_a_page_that_controls_writes_under_its_name(tmp_path: Path, there: Path)
 
 
 @pytest.mark.parametrize(
-    ("query", "keys"), [("run", {"run": "../../etc"}), ("ticket", {"run": "../x", "what": "csv"}), ("sudo", {}),
-                        ("ticket", {"run": RUN.name, "what": "exe"}), ("ticket", {"run": "--help", "what": "csv"})],
+    ("query", "keys"),
+    [
+        ("run", {"run": "../../etc"}), ("prepare", {"run": RUN.name}), ("ticket", {"run": "../x", "what": "csv"}),
+        ("sudo", {}), ("ticket", {"run": RUN.name, "what": "exe"}), ("ticket", {"run": "--help", "what": "csv"}),
+    ],
 )  # fmt: skip
 def test_a_bad_question_is_refused(query: str, keys: dict[str, Any], tmp_path: Path, there: Path) -> None:
     async def story(stage: PageStage) -> None:
@@ -67,6 +73,25 @@ def test_a_download_is_the_table_of_the_command_and_is_fetched_once(tmp_path: Pa
         head, _, body = (await stage.http(request)).partition(b"\r\n\r\n")
         assert b"attachment" in head and body.startswith(b"level,condition,") and body.count(b"\n") == 3
         assert b" 404 " in (await stage.http(request)).partition(b"\r\n")[0]
+
+    play(tmp_path, story)
+
+
+def test_a_run_that_ends_is_prepared_for_its_first_picture(
+    tmp_path: Path, there: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(Questions, "prepare", lambda _self, run: asked.append(run))
+
+    async def story(stage: PageStage) -> None:
+        page = await stage.paired("look")
+        run = state().run
+        assert run is not None
+        stage.fake.show(replace(state(), run=replace(run, name="first", folder="runs/first", exit=None)))
+        assert (await page.service("snapshot"))["state"]["run"]["name"] == "first"
+        stage.fake.show(replace(state(), run=replace(run, name="first", folder="runs/first", exit=0)))
+        await page.service("snapshot")
+        assert asked == ["first"]
 
     play(tmp_path, story)
 
