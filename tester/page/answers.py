@@ -9,16 +9,20 @@ from hashlib import sha256
 from http import HTTPStatus
 from importlib import resources
 from importlib.resources.abc import Traversable
-from pathlib import PurePosixPath
+from pathlib import Path, PurePosixPath
 from typing import Final
+from urllib.parse import parse_qs, urlsplit
 
 from websockets.datastructures import Headers
 from websockets.http11 import Request, Response
 
 from tester.base import clock
+from tester.queue.calendar import calendar_text, key_valid
+from tester.queue.view import QueueView
 
 SOCKET: Final = "/socket"
 DOWNLOAD: Final = "/download/"
+CALENDAR: Final = "/queue.ics"
 TICKET_S = 60.0
 """How long a ticket is good, s; it is good once."""
 MOST_TICKETS = 16
@@ -124,6 +128,19 @@ class Tickets:
         """Forget old tickets."""
         now_s = self._now()
         self._waiting = {ticket: kept for ticket, kept in self._waiting.items() if kept[0] > now_s}
+
+
+def answer_calendar(request: Request, runs: Path, view: QueueView | None) -> Response:
+    """Answer a calendar's request: times and names of the queue's items, for a key that was made for it.
+
+    ``runs``: folder of the keys; ``view``: the queue, None where it is not known.
+    """
+    keys = parse_qs(urlsplit(request.path).query).get("key", [])
+    if len(keys) != 1 or not key_valid(runs, keys[0]):
+        return refused(HTTPStatus.FORBIDDEN, "this key reads no calendar: `tester queue key` makes one")
+    if view is None:
+        return refused(HTTPStatus.SERVICE_UNAVAILABLE, "the queue is not known: no service runs")
+    return answer(HTTPStatus.OK, calendar_text(view).encode(), "text/calendar; charset=utf-8", Cache_Control="no-store")
 
 
 def answer_file(request: Request, files: dict[str, File], tickets: Tickets) -> Response:

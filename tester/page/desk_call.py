@@ -51,7 +51,7 @@ class NewCode(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Revoke(StrictMessage):
-    """End a pairing; its pages are closed. 0: all pairings, the calendar's key too."""
+    """End a pairing; its pages are closed. 0: all pairings."""
 
     number: int
     ask: Literal["revoke"] = "revoke"
@@ -93,8 +93,6 @@ class DeskView:
     code: ShownCode | None
     asked: tuple[ShownCode, ...]
     pairings: tuple[ShownPairing, ...]
-    calendar: bool = False
-    """Whether a calendar's key is good."""
 
 
 VIEW: TypeAdapter[DeskView] = TypeAdapter(DeskView)

@@ -12,7 +12,7 @@ from tester.page.front import to_front
 from tester.page.visitor import Visitor
 from tester.service.address import Address
 from tester.service.client import Client, Link, Lost
-from tester.service.protocol import VERSION, Event, Hello, PlanMessage, ServerMessage, Snapshot, encode
+from tester.service.protocol import VERSION, Event, Hello, ServerMessage, Snapshot, encode
 from tester.service.state_view import RunView
 
 NAME = "page"
@@ -28,8 +28,6 @@ class Hub:
         self.link = Link(address, name=NAME)
         self.visitors: list[Visitor] = []
         self._hello: Hello | None = None
-        self._newest: dict[str, bytes] = {}
-        """The newest message of each kind that is not in ``Client``, for pages that enter later."""
         self._lost = "not connected yet"
         self._running = ""
         self.run_ended: Callable[[str], None] = lambda _: None
@@ -50,7 +48,6 @@ class Hub:
             return
         if isinstance(message, Hello):
             self._lost, self._hello = "", message
-            self._newest.clear()
             for visitor in self.visitors:
                 self._greet(visitor)
             return
@@ -66,8 +63,6 @@ class Hub:
             for visitor in self.visitors:
                 visitor.outbox.reply(wrapped)
         else:
-            if not isinstance(message, Snapshot | PlanMessage):
-                self._newest[message.type] = wrapped
             for visitor in self.visitors:
                 visitor.outbox.newest(message.type, wrapped)
 
@@ -98,8 +93,6 @@ class Hub:
             hello = present(self._hello, client)
             visitor.seen = hello.events[-1].seq if hello.events else 0
             visitor.outbox.reply(self._wrapped(hello))
-            for kind, wrapped in self._newest.items():
-                visitor.outbox.newest(kind, wrapped)
 
     def _link(self) -> bytes:
         return to_front("link", connected=not self._lost, reason=self._lost)
@@ -112,5 +105,5 @@ def present(hello: Hello, client: Client) -> Hello:
     """Return a hello with everything that the service has sent since."""
     return replace(
         hello, version=VERSION, machine=client.machine, state=client.state, plan=client.plan,
-        events=tuple(client.events), complete=client.complete, trend=tuple(client.trend),
+        events=tuple(client.events), complete=client.complete, trend=tuple(client.trend), queue=client.queue,
     )  # fmt: skip

@@ -110,7 +110,7 @@ async def host_page(options: PageOptions, write: Callable[[str], object], began:
         hub.run_ended = questions.prepare
         if options.warm:
             questions.warm()
-        reception = Reception(pairings, hub, origins, static_files(), tickets, questions.answer)
+        reception = Reception(pairings, hub, origins, static_files(), tickets, questions.answer, options.runs)
         desk = PageDesk(reception, f"{scheme}://{addresses[-1]}:{options.port}/")
         terminal = PageTerminal(desk, write)
         reception.changed = terminal.show

@@ -6,6 +6,7 @@ import asyncio
 from collections.abc import Awaitable, Callable
 from contextlib import suppress
 from http import HTTPStatus
+from pathlib import Path
 
 from pydantic import JsonValue, ValidationError
 from pydantic_core import to_json
@@ -14,7 +15,7 @@ from websockets.exceptions import ConnectionClosed
 from websockets.http11 import Request, Response
 
 from tester.page.allowed import ACTION, NotAllowedError, in_words, outside, rule_of
-from tester.page.answers import SOCKET, File, Tickets, answer_file
+from tester.page.answers import CALENDAR, SOCKET, File, Tickets, answer_calendar, answer_file
 from tester.page.answers import refused as refused_http
 from tester.page.front import (
     BadFrontError,
@@ -61,24 +62,31 @@ class Reception:
 
     def __init__(
         self, pairings: Pairings, hub: Hub, origins: Origins, files: dict[str, File], tickets: Tickets,
-        answering: Answering,
+        answering: Answering, runs: Path,
     ) -> None:  # fmt: skip
-        """Take the parts of the process."""
+        """Take the parts of the process. ``runs``: folder of the stored runs, with the keys of calendars."""
         self.pairings, self.hub, self.origins = pairings, hub, origins
         self.files, self.tickets = files, tickets
         self.answering = answering
+        self.runs = runs
         self.strangers = Strangers()
         self.changed: Callable[[], None] = lambda: None
         """Called when a pairing or a code changes, for the machine's screen."""
 
-    def admit(self, connection: ServerConnection, request: Request) -> Response | None:
+    async def admit(self, connection: ServerConnection, request: Request) -> Response | None:
         """Answer a request over HTTP; None lets a WebSocket open."""
         wants_socket = request.path == SOCKET
         if reason := self.origins.refusal(request.headers, socket=wants_socket):
             return refused_http(HTTPStatus.FORBIDDEN, reason)
         if getattr(request, "method", "GET") not in ("GET", "HEAD"):
             return refused_http(HTTPStatus.METHOD_NOT_ALLOWED, "only GET is answered")
-        return None if wants_socket else answer_file(request, self.files, self.tickets)
+        if wants_socket:
+            return None
+        if request.path.partition("?")[0] == CALENDAR:
+            client = self.hub.link.client
+            queue = client.queue if client is not None else None
+            return await asyncio.to_thread(answer_calendar, request, self.runs, queue)
+        return answer_file(request, self.files, self.tickets)
 
     # -- a page -----------------------------------------------------------------------------------------------
 

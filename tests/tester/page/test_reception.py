@@ -9,15 +9,18 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from pydantic_core import to_json
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from tester.base.trouble import MisuseError
 from tester.page import reception
 from tester.page.desk_call import NewCode, Revoke
 from tester.page.page_process import PageOptions, check_options
+from tester.queue.calendar import new_key, revoke_key
 from tester.service.commands import Hold
 from tester.service.stop_lane import StopLane
 from tests.tester.page.stage import PageStage
+from tests.tester.queue.test_calendar import view
 from tests.tester.service.views import HOSTILE, hostile, plan, state
 
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="the fake service listens at a Unix socket")
@@ -318,6 +321,38 @@ def test_every_answer_carries_the_policy(tmp_path: Path) -> None:
             head = answer.partition(b"\r\n\r\n")[0]
             assert b"require-trusted-types-for 'script'" in head and b"frame-ancestors 'none'" in head
             assert b"nosniff" in head and b"no-referrer" in head and b"unsafe" not in head
+
+    play(tmp_path, story)
+
+
+# -- the queue ----------------------------------------------------------------------------------------------
+
+
+def test_a_page_that_enters_later_gets_the_queue_as_it_is_now(tmp_path: Path) -> None:
+    async def story(stage: PageStage) -> None:
+        first = await stage.paired("look")
+        await first.service("hello")
+        stage.fake.gateway.take(b"q" + to_json(view("night")))
+        assert (await first.service("queue"))["queue"]["items"][0]["name"] == "night"
+        late = await stage.paired("look", "late")
+        assert (await late.service("hello"))["queue"]["items"][0]["name"] == "night"
+
+    play(tmp_path, story)
+
+
+def test_a_calendar_reads_times_and_names_with_its_key_until_that_is_revoked(tmp_path: Path) -> None:
+    async def story(stage: PageStage) -> None:
+        page = await stage.paired("look")
+        await page.service("hello")
+        stage.fake.gateway.take(b"q" + to_json(view("night")))
+        await page.service("queue")
+        key = new_key(tmp_path / "runs", "phone")
+        host = f"HTTP/1.1\nHost: 127.0.0.1:{stage.port}\n\n"
+        shown = await stage.http(f"GET /queue.ics?key={key} {host}")
+        assert b"SUMMARY:night" in shown and b"text/calendar" in shown and b"secret operator" not in shown
+        revoke_key(tmp_path / "runs", 1)
+        for wrong in (f"?key={key}", "?key=", "", f"?key={key}&key={key}", "?key=%00"):
+            assert (await stage.http(f"GET /queue.ics{wrong} {host}")).startswith(b"HTTP/1.1 403 ")
 
     play(tmp_path, story)
 
