@@ -60,9 +60,10 @@ class OutboxScene:
     def __init__(
         self, folder: Path, settings: NoticeSettings, *, channel: NoticeChannel | None = None,
         secrets: NoticeSecrets | None = None, now_s: float = NOON_S, service: str = "s1", zone: tzinfo = UTC,
+        file: OutboxFile | None = None,
     ) -> None:  # fmt: skip
         self.now_s = now_s
-        self.file = OutboxFile(folder / "outbox")
+        self.file = file or OutboxFile(folder / "outbox")
         channels = {"mail": channel} if channel is not None else channels_of(settings, secrets or NoticeSecrets())
         self.dispatch = NoticeDispatch(
             self.file, service, settings, channels, now_s, secrets or NoticeSecrets(), zone, "rig 2"
