@@ -153,14 +153,18 @@ def _read() -> tuple[NoticeSettings, NoticeSecrets] | None:
 
 
 def _missing(settings: NoticeSettings, secrets: NoticeSecrets) -> list[str]:
-    """Return which secrets are missing, in words."""
+    """Return which secrets and which extra are missing, in words."""
+    from importlib.util import find_spec
+
+    from tester.base.plugins import needs
     from tester.notices.secrets_file import VARIABLES
 
     wanted = {
         "mail": settings.mail is not None and settings.mail.user is not None,
         "apprise": settings.apprise is not None,
     }
-    return [
+    extra = [needs("apprise", "Apprise", "notify")] if settings.apprise and find_spec("apprise") is None else []
+    return extra + [
         f"{channel}: {SECRETS_OF[channel]} is missing (expected in the secrets' file or in "
         f"{VARIABLES[SECRETS_OF[channel]]})"
         for channel, needed in wanted.items()

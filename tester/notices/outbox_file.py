@@ -102,9 +102,11 @@ class OutboxFile:
 
     def replace(self, entries: list[Entry]) -> None:
         """Replace the whole file at once: after a kill there is the old one or the new one. Raises OSError."""
-        write_whole(self.path, lambda part: _fill(part, entries))
-        os.close(self._file)
-        self._file = self._open()
+        os.close(self._file)  # Windows replaces no open file
+        try:
+            write_whole(self.path, lambda part: _fill(part, entries))
+        finally:
+            self._file = self._open()
 
     @property
     def size(self) -> int:

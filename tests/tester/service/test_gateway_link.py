@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 import signal
+import socket
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
@@ -12,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from tester.notices.notice import NOTE, NextNeeded, NoticeOver
 from tester.service import service_process
 from tester.service.address import CARD, TcpAddress, UnixAddress, new_tcp_address, read_card, stop_path
 from tester.service.client import Client, Gone, Link, Lost, NoServiceError
@@ -19,7 +21,9 @@ from tester.service.commands import CheckRecipe, ListRecipes, RunRecipe
 from tester.service.gateway_link import GatewayLink, LinkConfig
 from tester.service.protocol import Hello, Snapshot
 from tester.service.service import ServiceOptions
+from tester.service.service_link import OwnerEnd
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
+from tests.tester.notices.scene import notice
 from tests.tester.service.views import state
 
 ROOT = Path(__file__).parents[3]
@@ -226,3 +230,17 @@ def test_a_gateway_that_is_started_anew_is_no_death_of_the_service(gateway: Gate
         return told
 
     assert asyncio.run(story()) == ["", ""]
+
+
+def test_a_new_gateway_gets_every_note_again_and_of_what_comes_next_the_newest(tmp_path: Path) -> None:
+    gateway = GatewayLink(LinkConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
+    gateway.notify(notice(1))
+    for doing in ("run a", "run b"):
+        gateway.notify(NextNeeded(doing))
+    gateway.notify(NoticeOver("s1-2", "prompt"))
+    ours, theirs = socket.socketpair()
+    with ours, theirs:
+        gateway.adopt(OwnerEnd(ours))
+        lines = [line[1:] for line in theirs.recv(65_536).split(b"\n") if line[:1] == b"n"]
+    got = [NOTE.validate_json(line) for line in lines]
+    assert got == [notice(1), NoticeOver("s1-2", "prompt"), NextNeeded("run b")]

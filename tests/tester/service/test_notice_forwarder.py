@@ -7,6 +7,7 @@ import signal
 import subprocess
 from collections.abc import Iterator
 from pathlib import Path
+from threading import Event
 
 import pytest
 
@@ -161,3 +162,21 @@ def test_settings_that_are_mended_while_the_sender_runs_count(
     forwarder.close()
     assert watched.processes[-1].wait(30.0) == 0
     assert subjects(relay)[0] == "1"
+
+
+@posix
+def test_a_relay_that_does_not_answer_delays_no_other_channel(
+    settings: Path, tmp_path: Path, relay: MailRelay, forwarder: NoticeForwarder, watched: Watched
+) -> None:
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    settings.write_text(f"{settings.read_text()}command: {{run: \"sh -c 'echo $TESTER_EVENT > {pipe}'\"}}\n")
+    relay.hangs = Event()
+    forwarder.open()
+    forwarder.take(NOTE.dump_json(notice(1)))
+    assert pipe.read_text() == "trip\n"  # waits for the command
+    assert relay.taken == []
+    relay.hangs.set()
+    relay.wait_for(1)
+    forwarder.close()
+    assert watched.processes[0].wait(30.0) == 0
