@@ -149,3 +149,12 @@ def trend_columns(quantities: Quantities) -> tuple[str, ...]:
         if channel.screen is not None:
             columns += [column for column in (channel.screen.trend, channel.screen.setpoint_trend) if column]
     return tuple(columns)
+
+
+def setpoint_column(columns: tuple[str, ...], column: str) -> str:
+    """Return the column of a trend that holds the setpoint of the value in ``column``; "" if there is none.
+
+    It follows its value's column and has ``setpoint`` in its name.
+    """
+    at = columns.index(column) + 1
+    return columns[at] if at < len(columns) and "setpoint" in columns[at] else ""

@@ -13,10 +13,13 @@ Bin = tuple[float, float]
 BRAILLE = 0x2800
 DOTS = ((0x01, 0x02, 0x04, 0x40), (0x08, 0x10, 0x20, 0x80))
 """Bits of a braille pattern by column and row (Unicode, block Braille Patterns)."""
-WISH, LIMIT = "╌", "─"
+WISH, LIMIT, BORDER = "╌", "─", "┆"
+"""Signs of a setpoint, a limit, and a boundary between runs."""
 SERIES = "●"
 OTHER = "·"
 """Sign of a point that any other point may cover."""
+BAR = "│"
+"""Sign of a bar, which any point may cover."""
 SHRINK = 4.0
 """A range narrows only when it is this many times wider than its content, so that it does not jump."""
 
@@ -58,6 +61,8 @@ class Canvas:
     """Whether to use ASCII, with one dot in a cell."""
     _dots: list[list[int]] = field(default_factory=list[list[int]])
     _lines: dict[int, str] = field(default_factory=dict[int, str])
+    _signs: dict[tuple[int, int], str] = field(default_factory=dict[tuple[int, int], str])
+    """Signs in single cells, by row and column."""
 
     def __post_init__(self) -> None:
         """Begin empty."""
@@ -79,6 +84,21 @@ class Canvas:
             row = self._row(y, scale)
             self._lines[row if self.plain else row // 4] = sign
 
+    def track(self, levels: Sequence[float | None], sign: str, scale: PlotRange) -> None:
+        """Draw a level that changes in the course of time, one for each column of dots, the last at the right edge."""
+        shown = levels[-self.columns :]
+        for at, y in enumerate(shown, self.columns - len(shown)):
+            if y is not None and scale.low <= y <= scale.high:
+                self._sign(self._row(y, scale), at, sign)
+
+    def upright(self, at: int, sign: str) -> None:
+        """Draw a vertical line through a column of dots."""
+        for row in range(self.height):
+            self._signs.setdefault((row, at if self.plain else at // 2), sign)
+
+    def _sign(self, row: int, at: int, sign: str) -> None:
+        self._signs[(row, at) if self.plain else (row // 4, at // 2)] = sign
+
     def bins(self, bins: Sequence[Bin | None], scale: PlotRange) -> None:
         """Draw the newest bins, with the last at the right edge."""
         shown = bins[-self.columns :]
@@ -97,17 +117,23 @@ class Canvas:
         rows: list[str] = []
         for number, row in enumerate(self._dots):
             empty = self._lines.get(number, " ")
-            rows.append("".join(("*" if self.plain else chr(BRAILLE + dots)) if dots else empty for dots in row))
+            rows.append(
+                "".join(
+                    ("*" if self.plain else chr(BRAILLE + dots)) if dots else self._signs.get((number, column), empty)
+                    for column, dots in enumerate(row)
+                )
+            )
         return rows
 
 
 @dataclass(frozen=True, slots=True)
 class Point:
-    """One point of a scatter plot, with its sign."""
+    """One point of a scatter plot, with its sign, and half the length of its upright bar."""
 
     x: float
     y: float
     sign: str
+    half: float = 0.0
 
 
 def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2) -> list[str]:
@@ -120,25 +146,33 @@ def scatter(points: Sequence[Point], width: int, height: int, decimals: int = 2)
     xs.low, xs.high = min(p.x for p in points), max(p.x for p in points)
     if xs.high <= xs.low:
         xs.low, xs.high = xs.low - 1.0, xs.high + 1.0
-    ys.cover(min(p.y for p in points), max(p.y for p in points))
+    ys.cover(min(p.y - p.half for p in points), max(p.y + p.half for p in points))
     grid = [[" "] * inner for _ in range(rows)]
+
+    def across(p: Point) -> int:
+        return round((p.x - xs.low) / (xs.high - xs.low) * (inner - 1))
+
+    def down(y: float) -> int:
+        return round((ys.high - y) / (ys.high - ys.low) * (rows - 1))
+
     for p in points:
-        across = round((p.x - xs.low) / (xs.high - xs.low) * (inner - 1))
-        down = round((ys.high - p.y) / (ys.high - ys.low) * (rows - 1))
-        there = grid[down][across]
+        for row in range(down(p.y + p.half), down(p.y - p.half) + 1) if p.half else ():
+            grid[row][across(p)] = BAR
+    for p in points:
+        there = grid[down(p.y)][across(p)]
         if p.sign != OTHER or there == " ":
-            grid[down][across] = p.sign if there in (" ", OTHER, p.sign) else "+"
+            grid[down(p.y)][across(p)] = p.sign if there in (" ", OTHER, BAR, p.sign) else "+"
     labels = {0: f"{ys.high:.{decimals}f}", rows - 1: f"{ys.low:.{decimals}f}"}
     if rows >= 9 and rows % 2:
         labels[rows // 2] = f"{0.5 * (ys.low + ys.high):.{decimals + 1}f}"
     lines = [f"{labels.get(n, ''):>{margin}}│{''.join(row)}" for n, row in enumerate(grid)]
     lines.append(" " * margin + "└" + "─" * inner)
     at = {round((x - xs.low) / (xs.high - xs.low) * (inner - 1)): f"{x:g}" for x in {p.x for p in points}}
-    lines.append(" " * (margin + 1) + _labels(at, inner))
+    lines.append(" " * (margin + 1) + labels_below(at, inner))
     return lines
 
 
-def _labels(at: dict[int, str], width: int) -> str:
+def labels_below(at: dict[int, str], width: int) -> str:
     """Return the texts below their columns as far as there is room. The first and the last have priority over those
     between.
     """

@@ -33,6 +33,10 @@ class Row:
     condition: int
     mark: str = ""
     """Mark of mu (tester.analysis.trust); "" if mu is trustworthy."""
+    u: float | None = None
+    """Expanded uncertainty of mu of the mounted piece; None if it has none."""
+    short: str = ""
+    """mu with its mark, and U, as every table prints them: 0.707 ± 0.029."""
     figures: str = ""
     """Text of the columns after the setpoints, with their headings."""
     flags: tuple[str, ...] = ()
@@ -74,6 +78,11 @@ class Stored:
     """Number of the recipe's conditions, without references; replicates count once."""
     values: int = 0
     """Number of these conditions that have a trustworthy value."""
+
+    def titled(self, title: str) -> tuple[Row, ...]:
+        """Return the conditions that a step of this title measures, replicates in order."""
+        words = ListWords([row.held for row in self.rows])
+        return tuple(row for row in self.rows if title in (words.of(row.held), condition_words(row.held)))
 
     @property
     def plotted(self) -> tuple[Axis, ...]:
@@ -124,7 +133,10 @@ def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
     mu = result.mu if isfinite(result.mu) else None
     flags = tuple(flag_words(FLAGS[word]) for word in flags_in(result.flags) if word in FLAGS)
     cells = tuple(column.text(one) for column in view.columns)
-    return Row(cells, setpoint, setpoint.compound, mu, one.info.condition, one.mark, figures, flags)
+    u = result.budget.expanded
+    short = f"{view['mu'].text(one)} ± {view['u_expanded'].text(one)}" if mu is not None else result.status.value
+    known_u = u if isfinite(u) else None
+    return Row(cells, setpoint, setpoint.compound, mu, one.info.condition, one.mark, known_u, short, figures, flags)
 
 
 def condition(folder: Path, number: int, columns: int) -> tuple[Row, tuple[RepeatRow, ...]]:
@@ -183,18 +195,19 @@ def series(stored: Stored, row: Row, along: Axis) -> list[Row]:
 def points(stored: Stored, along: Axis, chosen: Row | None = None) -> list[Point]:
     """Return the conditions as points of mu against an axis; the sign is the compound's first letter or digit.
 
-    If a ``chosen`` row has a series along the axis, its points are ``●`` and all others ``·``.
+    If a ``chosen`` row has a series along the axis, its points are ``●`` and all others ``·``,
+    without their U.
     """
     marked = series(stored, chosen, along) if chosen is not None else []
 
-    return [
-        Point(
-            along.number(row.held), row.mu,
-            OTHER if len(marked) > 1 and row not in marked else row.mark or (_sign(row) if len(marked) < 2 else SERIES),
-        )
-        for row in stored.rows
-        if row.mu is not None
-    ]
+    found: list[Point] = []
+    for row in stored.rows:
+        if row.mu is None:
+            continue
+        other = len(marked) > 1 and row not in marked
+        sign = OTHER if other else row.mark or (_sign(row) if len(marked) < 2 else SERIES)
+        found.append(Point(along.number(row.held), row.mu, sign, 0.0 if other or row.u is None else row.u))
+    return found
 
 
 def _sign(row: Row) -> str:

@@ -78,7 +78,7 @@ class PlotPanel(Panel):
         along = self.along
         if along is None:
             return "mu"
-        what = f"mu against {along.name.replace('_', ' ')} ({along.unit})"
+        what = f"mu ± U against {along.name.replace('_', ' ')} ({along.unit})"
         if self.stored is None or self.row is None or len(series(self.stored, self.row, along)) < 2:
             return what
         setpoint = self.row.held
@@ -107,8 +107,8 @@ HELP = """\
 Above the stored runs, below the conditions of the chosen one: mu at the temperature asked for, both expanded
 uncertainties U (95 %), s (between repeats), valid (of those asked for), the means of further sensors, flags. Behind mu,
 and as a point's sign, ! is a number that is not to be trusted, ? one with a doubt among its flags. The plot is mu
-against one setpoint; a point's sign is its compound, + is several. What differs from the chosen condition in more than
-that setpoint is a faint dot.
+against one setpoint, with U of what was mounted as a bar; a point's sign is its compound, + is several. What differs
+from the chosen condition in more than that setpoint is a faint dot.
 
 Enter   on a run: read it. On a condition: its repeats, with traces, and why one is not in the mean; Enter there
         leaves a repeat out, or takes it in again, with a reason that is recorded. Nothing is ever deleted.

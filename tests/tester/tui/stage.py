@@ -132,7 +132,8 @@ def trend() -> list[tuple[float | None, ...]]:
     rows: list[tuple[float | None, ...]] = []
     for number in range(480):
         known: dict[str, float | None] = dict.fromkeys(MACHINE.trend, 0.0)
-        known["wall_s"] = 0.25 * number
+        known["wall_s"], known["t_s"] = 0.25 * number, 7141.5 + 0.25 * number
+        known["surface_setpoint_c"], known["load_setpoint_n"], known["slip_setpoint_mm_s"] = 40.0, 200.0, 300.0
         known["friction"] = 0.70 + 0.01 * (number % 7)
         known["surface_c"] = 38.0 + 0.005 * number
         known["load_n"] = 199.0 + number % 3

@@ -47,7 +47,7 @@ def test_the_run_screen_shows_its_values_in_their_order_and_its_trends(tmp_path:
         await shown(on)
         text = on.text()
         assert text.index("Drag force") < text.index("Track speed") and "0.40" in text and "mm/s" in text
-        assert "Drag force 12.5" in text and "Track speed 0.40 ── SP 0.50" in text
+        assert "Drag force 12.5" in text and "Track speed 0.40 mm/s ╌╌ SP 0.50" in text
         assert "Jacket" not in text and "Slip" not in text
 
     play(scene, tmp_path, (120, 40))

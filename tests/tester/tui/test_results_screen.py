@@ -101,9 +101,9 @@ def test_the_plot_is_reached_at_every_size_and_names_its_series(size: tuple[int,
     async def act(on: Stage) -> None:
         await at_repeats(on, run)
         await on.pilot.press("escape", *(["p"] if size[0] < 110 else []))
-        assert "mu against load (N): ● 1#, 300 mm/s, 25 degC   · others" in on.text()
+        assert "mu ± U against load (N): ● 1#, 300 mm/s, 25 degC   · others" in on.text()
         await on.pilot.press("p")
-        assert "mu against slip velocity (mm/s)" in on.text()
+        assert "mu ± U against slip velocity (mm/s)" in on.text()
 
     play(act, tmp_path, size)
 
