@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 from collections.abc import Callable
 from functools import wraps
 from pathlib import Path
@@ -174,4 +173,6 @@ def address_named(text: str) -> Address | None:
 
 def name_here() -> str:
     """Return this command's name at the service."""
-    return f"command of process {os.getpid()}"
+    from tester.base.who import who_here
+
+    return who_here("command")

@@ -19,7 +19,7 @@ from tester.base.source import InvalidSource
 from tester.run.kind_lookup import load_rig
 from tester.service.commands import Acknowledge, Hold, ListRuns, Release, TakeControl
 from tester.service.state_view import RunView, StateView
-from tester.tui.dialogs.confirm import AbortDialog, GoOnDialog, ResumeDialog, resumable
+from tester.tui.dialogs.confirm import AbortDialog, EndServiceDialog, GoOnDialog, ResumeDialog, resumable
 from tester.tui.dialogs.dialog import Dialog, TextDialog
 from tester.tui.dialogs.pages_dialog import PagesDialog, watch_pages
 from tester.tui.gone import TITLE, SmallPanel, death_text
@@ -33,6 +33,7 @@ from tester.tui.pages.run_page import RunPage as RunScreen
 from tester.tui.screen_scene import UNDER_WAY
 from tester.tui.theme import THEMES
 from tester.tui.widgets.head import RING, TABS, KeyLine, StateLine, TabLine, Tabs
+from tester.tui.widgets.said import SaidLines
 
 FREE: Final = ("OFFLINE", "IDLE", "INTERRUPTED")
 """Modes of a service that is not using the rig: it locks the buses only for a run or manual mode."""
@@ -99,6 +100,7 @@ class TesterApp(HostApp):
         with ContentSwitcher(initial=self.FIRST, id="views"):
             yield from self.views()
         yield SmallPanel(id="tiny")
+        yield SaidLines()
         yield from self.below()
         yield KeyLine(id="keys")
 
@@ -275,6 +277,16 @@ class TesterApp(HostApp):
             except SuspendNotSupported:
                 self.say("no other screen can be shown here: `tester commission RIG --tui` in a shell", problem=True)
 
+    def action_end_service(self) -> None:
+        """Offer to end the service here, while nothing runs."""
+        state, options = self.scene.state, self.options
+        if options.view_only or options.address is not None or state is None or not self.scene.linked:
+            self.say("not from here: end the service where it was started")
+        elif state.mode not in FREE:
+            self.say("the rig is in use: the service can be ended while no run and no manual mode is on")
+        else:
+            self.push_screen(EndServiceDialog())
+
     def action_use_theme(self, name: str) -> None:
         """Change the colours."""
         self.theme = THEMES[name].name
@@ -291,6 +303,7 @@ class TesterApp(HostApp):
             yield SystemCommand(f"Screen: {title}", key.upper(), lambda name=name: self.go_to(name))
         yield SystemCommand("Commission…", "Guide a new rig to its first coefficient", self.action_commission)
         yield SystemCommand("Pages in browsers…", "Codes to pair one, who is paired", self.action_pages)
+        yield SystemCommand("End the service…", "That a screen started, while nothing runs", self.action_end_service)
         yield SystemCommand("Take control", "From the client that has it", self.action_take_control)
         for name in THEMES:
             yield SystemCommand(f"Theme: {name}", "Colours", lambda name=name: self.action_use_theme(name))

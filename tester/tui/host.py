@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-import os
 import sqlite3
-import subprocess
-import sys
 from collections.abc import Callable
 from concurrent.futures import Future
 from dataclasses import dataclass
@@ -21,8 +18,8 @@ from textual.dom import DOMNode
 from tester.base import clock
 from tester.base.processes import tester_command
 from tester.base.trouble import in_words
+from tester.base.who import who_here
 from tester.service.address import Address
-from tester.service.address import folder as service_folder
 from tester.service.client import Client, Link, Lost, LostError, NoServiceError, RefusedError
 from tester.service.commands import Action, Stop
 from tester.service.protocol import Event
@@ -31,33 +28,17 @@ from tester.service.stop_call import NotTakenError
 from tester.service.stop_line import StopLine
 from tester.store.record_schema import StoreError
 from tester.tui.gone import farewell, stop_failed
+from tester.tui.own_service import start_service
 from tester.tui.screen_scene import ScreenScene
 from tester.tui.stop_line import stopping
 from tester.tui.theme import LookApp
 from tester.tui.widgets.panel_base import Panel
+from tester.tui.widgets.said import Said, SaidLines, said_now
 
+ROLE = "screen"
+"""What this client is, behind the name of its user."""
 TICK_S = 0.5
 """Period for updating the displayed age of the data, s."""
-LOG = "serve.log"
-"""File with the service's output, in the service's folder."""
-
-
-def start_service(rig: str, runs: Path) -> None:
-    """Start ``tester serve``; raises OSError. Only a connection to it shows whether it runs.
-
-    It has a session of its own, so that neither the end of the terminal nor a Ctrl+C there reaches the service. On
-    Windows a process group does this, according to its documentation; not tried.
-    """
-    arguments = tester_command("serve", "--rig", rig, "--out", str(runs))
-    detached = 0
-    if sys.platform == "win32":
-        detached = subprocess.CREATE_NEW_PROCESS_GROUP | subprocess.DETACHED_PROCESS
-    with (service_folder() / LOG).open("ab") as log:
-        subprocess.Popen(
-            arguments, stdin=subprocess.DEVNULL, stdout=log, stderr=log, start_new_session=True, creationflags=detached
-        )
-
-
 async def call(*arguments: str) -> tuple[bool, str]:
     """Run ``tester ARGUMENTS``; return whether it succeeded, and its error output."""
     process = await asyncio.create_subprocess_exec(
@@ -99,13 +80,15 @@ class HostApp(LookApp):
         """``now`` returns seconds, by default of tester.base.clock.monotonic."""
         super().__init__(options.theme, plain=options.plain)
         self.options = options
-        self.stop_line = StopLine(options.address, client_name())
+        self.stop_line = StopLine(options.address, who_here(ROLE))
         if self.HAS_RIG and not options.view_only:
             self.driver_class = stopping(self.driver_class, self.stop_line)
         self.scene = ScreenScene(now=now, view_only=options.view_only)
         self.link: Link | None = None
         self._started = False
         self._stops: set[asyncio.Task[None]] = set()
+        self.said: list[Said] = []
+        """Messages that have not expired, oldest first."""
 
     # -- for the screens --------------------------------------------------------------------------------------
 
@@ -121,11 +104,26 @@ class HostApp(LookApp):
     def show_results(self, run: RunView) -> None:
         """Show a run's results."""
 
+    def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
+        """Show a message to the person, as plain text, above the last line of each screen and dialog."""
+        now_s = self.scene.now()
+        self.said.append(said_now(text, problem=problem, lasting=lasting, now_s=now_s))
+        self.set_timer(self.said[-1].until_s - now_s + 0.01, self.show_said)
+        self.show_said()
+
+    def show_said(self) -> None:
+        """Show the messages that have not expired."""
+        now_s = self.scene.now()
+        self.said = [message for message in self.said if message.until_s > now_s]
+        for screen in self.screen_stack:
+            for lines in screen.query(SaidLines):
+                lines.show_said(self.said)
+
     # -- link -------------------------------------------------------------------------------------------------
 
     def connect(self) -> None:
         """Keep a link to the service from now on."""
-        self.link = Link(self.options.address, name=client_name(), control=not self.options.view_only)
+        self.link = Link(self.options.address, name=who_here(ROLE), control=not self.options.view_only)
         if self.HAS_RIG and not self.options.view_only:
             self.stop_line.open()
         self.run_worker(self._listen(self.link), name="link", group="link")
@@ -220,11 +218,6 @@ class HostApp(LookApp):
     def action_detach(self) -> None:
         """Leave the screen; the run continues."""
         self.exit(farewell(self.scene))
-
-
-def client_name() -> str:
-    """Return the name under which this screen joins the service."""
-    return f"tui of process {os.getpid()}"
 
 
 def host_of(node: DOMNode) -> HostApp:

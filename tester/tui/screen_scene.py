@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
 
 from tester.base import clock
 from tester.base.screen import UNKNOWN, MachineView, Value
@@ -23,11 +24,19 @@ from tester.service.protocol import (
 from tester.service.protocol import Snapshot as SnapshotMessage
 from tester.service.state_view import Alarm, PlanView, RunView, StateView
 
+if TYPE_CHECKING:
+    from tester.tui.stored import Stored
+
 STALE_S = 2.0
 """Age above which a state is stale and none of its values is trustworthy, s."""
 FRAMES_KEPT = 1000
 UNDER_WAY = "running"
 """Outcome of a run under way (docs/protocol.md)."""
+
+
+def mode_words(state: StateView) -> str:
+    """Return the mode for people: a twin that no run uses is ready, where a machine is not connected."""
+    return "READY (simulated)" if state.simulated and state.mode == "OFFLINE" else state.mode
 
 
 @dataclass(slots=True)
@@ -61,6 +70,8 @@ class ScreenScene:
     controls: bool = False
     view_only: bool = False
     replayed: bool = False
+    results: Stored | None = None
+    """What the run on display has given so far, as `tester show` prints it; None until it has been read."""
 
     @property
     def age_s(self) -> float:

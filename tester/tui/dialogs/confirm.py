@@ -19,6 +19,7 @@ from tester.service.state_view import Check, StateView
 from tester.tui.dialogs.dialog import Dialog, entry, field, line
 from tester.tui.formatting import clean
 from tester.tui.host import Listed, runs_in
+from tester.tui.own_service import end_service
 from tester.tui.widgets.panel_base import FAINT, WARNING, Parts, rows
 
 WORD = "abort"
@@ -52,6 +53,30 @@ class AbortDialog(Dialog):
             self.dismiss(None)
         else:
             self.host.say(f"nothing done: type {WORD}, or Esc")
+
+
+class EndServiceDialog(Dialog):
+    """Asks before the service that a screen started is ended."""
+
+    TITLE = "End the service"
+    BINDINGS: ClassVar[list[BindingType]] = [Binding("enter", "go", "End", show=False)]
+
+    def content(self) -> Iterable[Widget]:
+        """Return what follows, and the button."""
+        yield line("The service ends, and every other screen and page with it. Stored runs stay; `tester tui` starts "
+                   "another service.")  # fmt: skip
+        yield Button("End the service (Enter)", id="go", compact=True)
+
+    def on_button_pressed(self, event: Button.Pressed) -> None:
+        """End it, after the button."""
+        event.stop()
+        self.action_go()
+
+    def action_go(self) -> None:
+        """End it, and say so or why not."""
+        refusal = end_service()
+        self.host.say(refusal or "the service is asked to end", problem=bool(refusal))
+        self.dismiss(None)
 
 
 class GoOnDialog(Dialog):

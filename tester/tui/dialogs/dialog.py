@@ -17,6 +17,7 @@ from tester.tui.formatting import reflow
 from tester.tui.host import HostApp, host_of
 from tester.tui.widgets.head import event_row
 from tester.tui.widgets.panel_base import Parts, rows
+from tester.tui.widgets.said import SaidLines
 
 
 class Dialog(ModalScreen[None]):
@@ -39,6 +40,9 @@ class Dialog(ModalScreen[None]):
         with Vertical(id="box") as box:
             box.border_title, box.border_subtitle = self.title or "", self.SUBTITLE
             yield from self.content()
+        lines = SaidLines()
+        yield lines
+        lines.call_after_refresh(self.host.show_said)
 
     def content(self) -> Iterable[Widget]:
         """Return the widgets in the box."""

@@ -22,7 +22,8 @@ from tester.service.protocol import Frame
 from tester.service.state_view import BusView as BusState
 from tester.service.state_view import DeviceView
 from tester.tui.formatting import clean, fit
-from tester.tui.host import LOG, Keys, View
+from tester.tui.host import Keys, View
+from tester.tui.own_service import LOG
 from tester.tui.screen_scene import STALE_S, ScreenScene
 from tester.tui.widgets.panel_base import FAINT, NOTICE, WARNING, Panel, Parts, rows
 

@@ -9,7 +9,7 @@ from tester.service.protocol import Event
 from tester.service.state_view import Alarm, StateView
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.gone import gone_line
-from tester.tui.screen_scene import STALE_S, UNDER_WAY, ScreenScene
+from tester.tui.screen_scene import STALE_S, UNDER_WAY, ScreenScene, mode_words
 from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Panel, Part, Parts, plain, rows
 
 Tabs = tuple[tuple[str, str, str], ...]
@@ -40,7 +40,7 @@ class StateLine(Panel):
 
 
 def _mode(scene: ScreenScene, state: StateView) -> Part:
-    text = f" {'REPLAY' if scene.replayed else clean(state.mode, 20)} "
+    text = f" {'REPLAY' if scene.replayed else clean(mode_words(state), 20)} "
     if not scene.linked:
         return text.replace(" ", "?", 1), FAINT
     if state.mode in TRIPPED_MODES:
@@ -81,7 +81,7 @@ def _where(scene: ScreenScene, state: StateView, width: int) -> list[str]:
     if scene.view_only:
         pieces.append("  view only")
     elif not scene.controls and not scene.replayed:
-        who = clean(state.clients.controller, 30)
+        who = clean(state.clients.controller, 40)
         pieces.append(f"  watching, {who} controls" if who else "  watching")
     if run is not None and run.compound and run.outcome == UNDER_WAY:
         pieces.append(f"  {clean(run.compound, 20)} {clean(run.note, 30)}".rstrip())

@@ -5,7 +5,7 @@ from __future__ import annotations
 from tester.base.words import decimal, duration
 from tester.service.state_view import Gate, ProgressView, SoakView
 from tester.tui.formatting import clean, fit
-from tester.tui.screen_scene import UNDER_WAY, ScreenScene
+from tester.tui.screen_scene import UNDER_WAY, ScreenScene, mode_words
 from tester.tui.widgets.panel_base import FAINT, NOTICE, Panel, Parts, rows
 
 DONE, LEFT = "━", "─"
@@ -34,7 +34,7 @@ def idle_words(scene: ScreenScene, width: int) -> Parts:
     state = scene.state
     if state is None:
         return []
-    lines: list[Parts] = [[fit(f" {clean(state.mode)}: {clean(state.mode_text)}", width)]]
+    lines: list[Parts] = [[fit(f" {clean(mode_words(state))}: {clean(state.mode_text)}", width)]]
     run = state.run
     if run is not None and run.outcome != UNDER_WAY:
         reason = f": {clean(run.reason)}" if run.reason else ""

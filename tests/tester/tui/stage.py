@@ -210,7 +210,8 @@ class House:
             while len(on.app.screen_stack) > 1:
                 on.app.pop_screen()
                 await on.pilot.pause()
-            on.app.clear_notifications()
+            on.app.said.clear()
+            on.app.show_said()
             on.app.query_one(BusPage).action_unfilter()
             await on.pilot.press("f2")
             on.app.view.take_focus()
