@@ -2,19 +2,26 @@
 
 from __future__ import annotations
 
+import asyncio
+import sqlite3
+from functools import partial
 from typing import ClassVar
 
 from textual.app import ComposeResult
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal, Vertical
+from textual.content import Content
 
 from tester.base.words import duration
 from tester.service.state_view import PlanStep
+from tester.store.record_schema import StoreError
 from tester.tui.dialogs.dialog import LogDialog
 from tester.tui.dialogs.prompt import PromptDialog
 from tester.tui.formatting import clean, clock_text, fit
 from tester.tui.host import Keys, View
-from tester.tui.screen_scene import ScreenScene
+from tester.tui.screen_scene import UNDER_WAY, ScreenScene
+from tester.tui.stored import read
+from tester.tui.widgets.ended_panel import EndedPanel, latest_words, step_value
 from tester.tui.widgets.head import EventsPanel
 from tester.tui.widgets.panel_base import FAINT, WARNING, Panel, Parts, rows
 from tester.tui.widgets.progress import ProgressPanel
@@ -23,6 +30,10 @@ from tester.tui.widgets.values_panel import ValuesPanel
 
 SIGNS = {"done": "✔", "now": "▶", "later": "·"}
 TIME = 9
+WITH_BOTH = 56
+"""Columns from which a finished condition's row has its value and its time."""
+READ_EVERY_S = 2.0
+"""Least time between two readings of the run's record for its results, s: each takes the time of `tester show` [A]."""
 
 
 class StepsPanel(Panel):
@@ -41,22 +52,34 @@ class StepsPanel(Panel):
             *shown, last = shown
             below, more = (last, *below), more + 1
         left_s = scene.state.progress.step_left_s if scene.state is not None else None
-        lines = [step_row(step, width, left_s) for step in shown]
+        whole = plan.first == 1
+        lines = [
+            step_row(step, width, left_s, step_value(scene.results, plan.steps, at, whole=whole))
+            for at, step in enumerate(shown, first)
+        ]
         if more:
             beyond_s = sum(step.expected_s for step in below) + plan.beyond_s
             lines.append([_row("·", f"{more} more steps", f"~{duration(beyond_s)}", width)])
         return rows(lines)
 
 
-def step_row(step: PlanStep, width: int, left_s: float | None) -> Parts:
+def step_row(step: PlanStep, width: int, left_s: float | None, value: str = "") -> Parts:
     """Return a step as a row: sign, title, and a time: its measured duration, the time left in it (``left_s``), or its
-    expected duration.
+    expected duration. What a finished condition gave (``value``) comes before the time, or in its place if the row is
+    narrow.
     """
+    if value and width < WITH_BOTH:
+        room = max(width - len(value) - 3, 4)
+        return [(f"{SIGNS[step.state]} {fit(clean(step.title), room).ljust(room)} ", FAINT), (value, "bold")]
     if step.measured_s is not None:
         time = duration(step.measured_s)
     else:
         time = f"~{duration(left_s if step.state == 'now' and left_s is not None else step.expected_s)}"
     style = {"done": FAINT, "now": "bold", "later": ""}[step.state]
+    if value:
+        room = max(width - TIME - len(value) - 4, 4)
+        title = fit(clean(step.title), room).ljust(room)
+        return [(f"{SIGNS[step.state]} {title} ", style), (value, "bold"), (f" {time:>{TIME}}", style)]
     return [(_row(SIGNS[step.state], clean(step.title), time, width), style)]
 
 
@@ -89,7 +112,8 @@ class PromptPanel(Panel):
 
 HELP = """\
 Each row: measured value, setpoint, unit, and a bar. On the bar ● is the value, ┼ the setpoint, ═ the band in which
-samples count, ├ and ┤ the limits at which something happens. A dim value with ? is old: it is not a value.
+samples count, ├ and ┤ the limits at which something happens. A dim value with ? is old: it is not a value. A finished
+condition has its mu ± U (95 %, of what is mounted) in Steps; at the end the results take the place of the gauges.
 
 space   HOLD: lift, nothing slides, keep the temperature. Costs at most the repeat under way, which is done again.
 r       resume after HOLD; else lists the runs that are not over (stopped, tripped, cut off). Shows the pre-flight list.
@@ -115,12 +139,16 @@ class RunPage(View, can_focus=True):
         """``plain``: draw trends in ASCII."""
         super().__init__(id=id)
         self.plain = plain
+        self._read: tuple[str, int, str] | None = None
+        """Run, number of finished conditions and outcome for which the results were read."""
+        self._read_again_s = 0.0
 
     def compose(self) -> ComposeResult:
         """Lay out the panels."""
         yield PromptPanel(id="prompt")
         with Horizontal():
             with Vertical(id="run-left"):
+                yield EndedPanel(id="ended", classes="box", title="Results")
                 yield ValuesPanel(id="values", classes="box", title="Process: measured, setpoint")
                 yield ProgressPanel(id="progress")
                 with Horizontal(id="trends-1"):
@@ -132,6 +160,43 @@ class RunPage(View, can_focus=True):
             with Vertical(id="run-right"):
                 yield StepsPanel(id="steps", classes="box", title="Steps")
                 yield EventsPanel(id="events", classes="box", title="Alarms and events")
+
+    def show(self, scene: ScreenScene) -> None:
+        """Show the scene: the gauges while a run is under way, its results once it has ended."""
+        self._follow(scene)
+        ended = scene.ended_run is not None and scene.results is not None and not scene.replayed
+        self.set_class(ended, "-ended")
+        values = self.query_one("#values")
+        latest = Content(latest_words(scene))
+        if str(values.border_subtitle) != latest.markup:
+            values.border_subtitle = latest
+        super().show(scene)
+
+    def _follow(self, scene: ScreenScene) -> None:
+        """Read the run's results when another condition is over, and at its end."""
+        run = scene.state.run if scene.state is not None else None
+        if scene.replayed or scene.state is None or run is None or not run.folder:
+            return
+        wanted = (run.folder, scene.state.progress.over, run.outcome)
+        again = self._read is not None and self._read[0] == run.folder
+        if not again:
+            scene.results = None
+        early = run.outcome == UNDER_WAY and (not wanted[1] or (again and scene.now() < self._read_again_s))
+        if wanted == self._read or early:
+            return
+        self._read, self._read_again_s = wanted, scene.now() + READ_EVERY_S
+        self.run_worker(partial(self._read_results, scene, run.folder), group="results", exclusive=True,
+                        exit_on_error=False)  # fmt: skip
+
+    async def _read_results(self, scene: ScreenScene, folder: str) -> None:
+        """Read the results; a record that is elsewhere, or not readable yet, shows nothing."""
+        try:
+            found = await asyncio.to_thread(read, folder, self.host.options.runs)
+        except (StoreError, OSError, sqlite3.Error):
+            return
+        if scene.state is not None and scene.state.run is not None and scene.state.run.folder == folder:
+            scene.results = found
+            self.host.scene_changed()
 
     def action_answer(self) -> None:
         """Open the waiting question. At the end of a run, show its results instead."""

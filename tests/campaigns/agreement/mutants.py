@@ -94,6 +94,14 @@ MUTANTS: Mapping[str, Mutant] = {
         "tester.tui.stored", "{mu.heading} {mu.text(measured)}", "{mu.heading} {mu.text(repeats.rows[0])}",
         (SCREENS,),
     ),
+    "screen Steps: U is that of the compound": Mutant(
+        "tester.tui.stored", "{view['u_expanded'].text(one)}", "{view['u_expanded_compound'].text(one)}",
+        (SCREENS,),
+    ),
+    "results: a workbook's numbers are rounded": Mutant(
+        "tester.results.workbook", "float(written), form", "round(float(written), 1), form",
+        (TABLES,),
+    ),
     "replay: the time left is a minute too long": Mutant(
         "tester.tui.playback", "left_s=left_s, step_left_s", "left_s=left_s + 60.0, step_left_s",
         (SCREENS,),

@@ -8,7 +8,7 @@ from itertools import pairwise
 
 from tester.analysis.flags import FLAGS
 from tests.campaigns.agreement.facts import Facts, seconds_of
-from tests.campaigns.agreement.names import CONDITIONS, RIG_SECONDS, STATUS, VALUES, quantity_of
+from tests.campaigns.agreement.names import CONDITIONS, MU, RIG_SECONDS, STATUS, VALUES, quantity_of
 from tests.campaigns.agreement.record import Record
 from tests.campaigns.agreement.table import TableReader
 
@@ -144,6 +144,24 @@ def moment(facts: Facts, record: Record, at: str, text: str) -> None:
     steps = [(match.group(1), seconds_of(match.group(3)) or 0.0) for match in _STEP.finditer(text)]
     if steps:  # the list adds up to the second
         facts.add(subject, "time left", sum(seconds for sign, seconds in steps if sign != "✔"), 0.49)
+
+
+_STEP_VALUE = re.compile(r"✔ (\S.*?)\s+(-?\d\.\d+[?!]?) ± (\d\.\d+)")
+
+
+def read_steps(record: Record, worn: str, text: str, output: str) -> Facts:
+    """Return the facts of the list of steps: mu and U of each finished condition whose words no other has."""
+    facts = Facts(output)
+    reader = TableReader(facts, record, worn)
+    for match in _STEP_VALUE.finditer(text):
+        rows = record.in_words(match[1])
+        numbers = [condition.number for row in rows for condition in record.rows[row]]
+        if len(numbers) == 1:
+            reader.cell(record.of_condition(numbers[0]), MU, match[2])
+            reader.cell(record.of_condition(numbers[0]), f"U this {worn}", match[3])
+        elif not rows and not match[1].endswith("…"):
+            facts.strange.append(f"no condition is like this step: {match.group()}")
+    return facts
 
 
 def done_by(record: Record, at_s: float) -> int:

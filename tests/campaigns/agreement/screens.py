@@ -6,7 +6,7 @@ import asyncio
 from collections.abc import Callable, Iterator
 
 from tests.campaigns.agreement.facts import Facts
-from tests.campaigns.agreement.read_screens import done_by, moment, read_repeats, read_results
+from tests.campaigns.agreement.read_screens import done_by, moment, read_repeats, read_results, read_steps
 from tests.campaigns.agreement.record import Record
 
 _SIZE = (180, 70)
@@ -54,7 +54,7 @@ async def _replayed(record: Record, worn: str) -> list[Facts]:
             journal.count(at, "conditions done", done_by(record, app.at_s))
             journal.add(at, "time left", app.playback.length_s - app.at_s, _STEP_S * len(app.scene.plan.steps) + 1.0)
         journal.count(record.run, "conditions of the plan", len(record.conditions))
-        found += [replay, journal]
+        found += [replay, journal, read_steps(record, worn, screen_text(app), "screen Steps")]
         await pilot.press("f5")
         await pilot.pause()
         found.append(read_results(record, worn, screen_text(app), "screen Results"))
