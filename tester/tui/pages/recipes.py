@@ -17,21 +17,27 @@ from textual.widgets import OptionList, TextArea
 from textual.widgets.option_list import Option
 
 from tester.base.trouble import in_words
-from tester.service.commands import CheckRecipe
+from tester.service.commands import CheckRecipe, ShowPlan
 from tester.tui.dialogs.plan_dialog import PlanDialog
-from tester.tui.dialogs.start import StartDialog
-from tester.tui.formatting import clean, clean_lines
+from tester.tui.dialogs.start import StartDialog, number_in
+from tester.tui.formatting import clean, clean_lines, fit
 from tester.tui.host import Keys, View
 from tester.tui.recipe_library import Checked, ListedRecipe, RecipeProblem, own_copy, read_again, shelf
-from tester.tui.screen_scene import ScreenScene
+from tester.tui.screen_scene import UNDER_WAY, ScreenScene
+from tester.tui.widgets.panel_base import FAINT
 
 FIRST = "quickstart"
+GROUPS = ("Mine", "Shipped for this rig", "Shipped for other rigs")
+"""Headings of the list."""
+NAME = 16
+"""Columns of a recipe's name; its conditions and hours follow."""
 EDITORS = ("VISUAL", "EDITOR")
 DEFAULT_EDITOR = "notepad" if os.name == "nt" else "vi"
 TAKES_A_LINE = ("vi", "vim", "nvim", "nano", "emacs")
 """Editors that accept +LINE to open a file at a line."""
 HELP = """\
-The list on the left: ✔ valid on this rig, ✘ with the number of problems. Problems are below the text, each with line,
+The list on the left: your recipes, then those shipped: ✔ valid on this rig, ✘ with the number of problems, conditions,
+hours of rig time. Problems are below the text, each with line,
 column, the error and the source of the limit.
 
 Enter   on a recipe: the start dialog, or with problems the first of them. On a problem: jump to its line.
@@ -61,9 +67,13 @@ class RecipesView(View):
         """Read nothing yet."""
         super().__init__(id=id)
         self.recipes: list[ListedRecipe] = []
+        self.rows: list[ListedRecipe | None] = []
+        """The rows of the list; None for the heading of a group."""
         self.checked: dict[str, Checked] = {}
         """Problems of each recipe, by its path."""
         self.failed: dict[str, str] = {}
+        self.planned: dict[str, str] = {}
+        """Conditions and hours of each recipe that can run, by its path."""
         self._asked = False
 
     def compose(self) -> ComposeResult:
@@ -95,11 +105,27 @@ class RecipesView(View):
 
     def _read(self, chosen: str) -> None:
         self.recipes = shelf(self.host.options.recipe_folder)
-        options = self.query_one("#recipe-list", OptionList)
-        options.clear_options()
-        options.add_options([Option(self._label(recipe), id=str(at)) for at, recipe in enumerate(self.recipes)])
-        options.highlighted = next((at for at, recipe in enumerate(self.recipes) if recipe.name == chosen), 0)
+        self._list(next((recipe for recipe in self.recipes if recipe.name == chosen), None))
+
+    def _list(self, chosen: ListedRecipe | None) -> None:
+        """List the recipes by groups, the cursor on the chosen one."""
+        self.rows, options = [], list[Option]()
+        for group, title in enumerate(GROUPS):
+            members = [recipe for recipe in self.recipes if self._group(recipe) == group]
+            if members:
+                self.rows += [None, *members]
+                options += [Option(Content(title), disabled=True), *(Option(self._label(recipe)) for recipe in members)]
+        listed = self.query_one("#recipe-list", OptionList)
+        listed.clear_options()
+        listed.add_options(options)
+        paths = [recipe.path if recipe is not None else None for recipe in self.rows]
+        at = paths.index(chosen.path) if chosen is not None and chosen.path in paths else 1
+        listed.highlighted = at if at < len(self.rows) else None
         self._open()
+
+    def _group(self, recipe: ListedRecipe) -> int:
+        """Return the place of a recipe's group in ``GROUPS``; a shipped one that this rig cannot run is another's."""
+        return 0 if not recipe.shipped else 2 if self.checked.get(str(recipe.path)) else 1
 
     def _label(self, recipe: ListedRecipe) -> Content:
         checked = self.checked.get(str(recipe.path))
@@ -110,13 +136,14 @@ class RecipesView(View):
         else:
             sign = f"✘ {len(checked)}" if checked else "✔"
         bad = sign.startswith("✘")
-        return Content.assemble((f"{sign:<4}", "bold reverse" if bad else ""), clean(recipe.name, 60))
+        name, size = fit(clean(recipe.name, 60), NAME), self.planned.get(str(recipe.path), "")
+        return Content.assemble((f"{sign:<4}", "bold reverse" if bad else ""), f"{name:<{NAME}}", (size, FAINT))
 
     @property
     def chosen(self) -> ListedRecipe | None:
         """Return the recipe under the cursor."""
         at = self.query_one("#recipe-list", OptionList).highlighted
-        return self.recipes[at] if at is not None and at < len(self.recipes) else None
+        return self.rows[at] if at is not None and at < len(self.rows) else None
 
     def _open(self) -> None:
         """Show the chosen recipe's text and problems."""
@@ -140,8 +167,8 @@ class RecipesView(View):
         problems.add_options([Option(f"{p.line}:{p.column} {clean(p.message)}") for p in faults])
 
     def _relabel(self, recipe: ListedRecipe) -> None:
-        for at, listed in enumerate(self.recipes):
-            if listed.path == recipe.path:
+        for at, listed in enumerate(self.rows):
+            if listed is not None and listed.path == recipe.path:
                 self.query_one("#recipe-list", OptionList).replace_option_prompt_at_index(at, self._label(listed))
         if self.chosen is not None and self.chosen.path == recipe.path:
             self._open()
@@ -160,6 +187,22 @@ class RecipesView(View):
         for recipe in recipes:
             if not recipe.unreadable:
                 await self._check_one(recipe)
+        if self.is_attached:
+            self._list(self.chosen)
+        for recipe in recipes:
+            if self.checked.get(str(recipe.path)) == () and str(recipe.path) not in self.failed:
+                await self._plan_one(recipe)
+
+    async def _plan_one(self, recipe: ListedRecipe) -> None:
+        """Ask for the number of conditions and the hours of a recipe, unless the rig is in use."""
+        state = self.host.scene.state
+        if state is None or (state.run is not None and state.run.outcome == UNDER_WAY):
+            return
+        plan = await self.host.ask(ShowPlan(recipe.reference, recipe.sent))
+        if isinstance(plan, dict) and self.is_attached:
+            hours = number_in(plan, "rig_seconds") / 3600.0
+            self.planned[str(recipe.path)] = f"{number_in(plan, 'conditions'):4.0f}{hours:6.1f} h"
+            self._relabel(recipe)
 
     async def _check_one(self, recipe: ListedRecipe) -> None:
         answer = await self.host.ask(CheckRecipe(recipe.reference, recipe.sent))
@@ -233,6 +276,7 @@ class RecipesView(View):
         if recipe.shipped:
             self.host.say(f"your copy: {file.path}")
         self.checked.pop(str(file.path), None)
+        self.planned.pop(str(file.path), None)
         self._read(file.name)
         others = [r for r in self.recipes if r.path != file.path and str(r.path) not in self.checked]
         self._begin_check([read_again(file), *others])

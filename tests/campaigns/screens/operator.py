@@ -31,9 +31,9 @@ class Step:
 
 
 STEPS = (
-    Step("the service is started", (), "OFFLINE"),
+    Step("the service is started", (), "READY (simulated)"),
     Step("the recipes are checked", (), "✘ 1 mine", "recipes", 60.0),
-    Step("Enter on the one with a mistake jumps to it", ("End", "Enter"), MISTAKE, "mistake"),
+    Step("Enter on the one with a mistake jumps to it", ("Home", "Enter"), MISTAKE, "mistake"),
     Step("the editor corrects it, and it is checked again", ("e",), "✔   mine", "corrected"),
     Step("the plan", ("d",), "2 conditions", "plan"),
     Step("the start dialog plans it", ("Escape", "Enter"), "2 conditions", "start"),
@@ -50,12 +50,12 @@ STEPS = (
     Step("the manual screen shows it too", ("F4",), "P1 ", "alarm on manual"),
     Step("an acknowledgement is refused while the drive is lost", ("F3", "a"), "still there", "refused"),
     Step("STOP ends the run, the rig stays latched", ("F12",), "Last run", "over"),
-    Step("acknowledged, and ready for another run", ("a",), "OFFLINE", "acknowledged"),
-    Step("another run is started", ("F2", "End", "Enter"), "2 conditions", ""),
+    Step("acknowledged, and ready for another run", ("a",), "READY (simulated)", "acknowledged"),
+    Step("another run is started", ("F2", "Home", "Enter"), "2 conditions", ""),
     Step("it asks, and is answered at once", ("Enter",), "waits since", "", 60.0),
     Step("it measures", ("Enter", "Right", "Enter"), "rep 1/3", "second run", 60.0),
     Step("STOP", ("F12",), "STOP taken", "stop"),
-    Step("the rig is at a standstill", (), "OFFLINE", "stopped", 60.0),
+    Step("the rig is at a standstill", (), "READY (simulated)", "stopped", 60.0),
     Step("the results list both runs", ("F5",), "stopped", "results"),
     Step("the first run's conditions", ("Down", "Enter"), "short, tripped", "conditions"),
     Step("a condition's repeats", ("Enter",), "repeat 3", "repeats"),

@@ -22,7 +22,8 @@ else:
 
 KEYS = {
     "F2": b"\x1bOQ", "F3": b"\x1bOR", "F4": b"\x1bOS", "F5": b"\x1b[15~", "F6": b"\x1b[17~", "F12": b"\x1b[24~",
-    "Ctrl+X": b"\x18", "Enter": b"\r", "End": b"\x1b[F", "Tab": b"\t", "Shift+Tab": b"\x1b[Z", "Space": b" ",
+    "Ctrl+X": b"\x18", "Enter": b"\r", "End": b"\x1b[F", "Home": b"\x1b[H", "Tab": b"\t", "Shift+Tab": b"\x1b[Z",
+    "Space": b" ",
 }  # fmt: skip
 """What an xterm sends."""
 _ESCAPE = re.compile(rb"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[PX^_].*?\x1b\\|\x1b.", re.DOTALL)
@@ -110,8 +111,8 @@ def strip(drawn: bytes) -> str:
 
 
 async def start_mine(screen: Terminal) -> None:
-    """Start recipes/mine.yaml with every question answered by itself: the last of the list, which has been checked."""
-    await screen.press("F2", "End", "Enter")
+    """Start recipes/mine.yaml with every question answered by itself: the first of the list, which has been checked."""
+    await screen.press("F2", "Home", "Enter")
     await screen.until("Start a run")
     await screen.press("Shift+Tab", "Space", "Tab")
     await screen.until("itself: yes")

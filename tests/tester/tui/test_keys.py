@@ -189,7 +189,7 @@ def test_a_recipe_with_a_problem_leads_to_its_line_and_does_not_start(tmp_path: 
 
     async def act(on: Stage) -> None:
         await on.until(lambda: on.checked(), "the recipes are checked")
-        await on.pilot.press("end")
+        await on.pilot.press("home")
         assert "✘ 1 mine" in on.text()
         await on.pilot.press("enter")
         assert on.app.query_one("#recipe-text").cursor_location[0] == 2  # type: ignore[attr-defined]

@@ -160,7 +160,7 @@ def test_a_recipe_with_hostile_text_and_name_is_shown_as_it_is(tmp_path: Path) -
 
     async def act(on: Stage) -> None:
         await on.until(lambda: on.checked(), "the recipes are checked")
-        await on.pilot.press("end")
+        await on.pilot.press("home")
         assert "[bold]x[" in on.text() and "3:5 load: expected a unit [/x]" in on.text()
         assert not any(sign in on.text() for sign in "\x1b\x00\u202e")
 
