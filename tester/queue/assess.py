@@ -245,6 +245,11 @@ def _calibration(rig: Rig) -> str:
     return json.dumps([rows, ends], sort_keys=True, default=str)
 
 
+def same_rig(agreed: Hashes, rig: Rig) -> str:
+    """Return why a run must not begin on a rig that was read again, "" if it is the rig with the agreed hash."""
+    return "" if _hash(rig.text) == agreed.rig else "the rig file changed while the item was planned"
+
+
 def _materials(used: UsedMaterials) -> Iterator[tuple[str, str]]:
     for file in used.files:
         yield f"{file.role} {file.name}", _hash(" ".join((file.sha256, *(data.sha256 for data in file.data))))

@@ -201,7 +201,7 @@ class QueueDesk:
 
         def started() -> None:
             self._attested = Attested(order.by, clock.monotonic())
-            self._found, self._again_s = None, 0.0
+            self._found, self._again_s, self._wait = None, 0.0, ""
 
         self._put(order, lambda _queue: QueueStarted(order.by), started)
 
@@ -264,15 +264,13 @@ class QueueDesk:
 
             self.changes.put(lambda queue: ItemAdded(_item(queue, action, found, order.by)), then)
 
-    # -- the next item ----------------------------------------------------------------------------------------
-
     def due(self) -> QueueItem | None:
         """Return the item that may begin now; None while the queue waits. Call it only while nothing is under way."""
         if self.changes is None or self.unsettled or self.changes.broken:
             return None
         verdict = decide(self.queue, self._evidence())
         if isinstance(verdict, StartItem):
-            self._found, self._wait, self._again_s = None, "", 0.0
+            self._found, self._wait, self._again_s = None, f"item {verdict.item} begins", 0.0
             return self.queue.entry(verdict.item).item
         if isinstance(verdict, Look):
             if self._looking is None and not self._adds and clock.monotonic() >= self._again_s:
@@ -308,12 +306,13 @@ class QueueDesk:
     def returned(self, item: QueueItem, reason: str) -> None:
         """Put on record that an item's run did not begin."""
         assert self.changes is not None
+        self._wait = ""
         self.changes.put(lambda _queue: ItemReturned(item.id, reason))
 
     def ended(self, item: QueueItem, end: End, reason: str, run: str, *, stands: bool) -> None:
         """Put on record how an item ended."""
         assert self.changes is not None
-        self._attested = None  # from now on the last scan is the evidence
+        self._attested, self._wait = None, ""  # from now on the last scan is the evidence
         self.changes.put(lambda _queue: ItemEnded(item.id, end, reason, run, stands))
 
     def recipe(self, item: QueueItem) -> str:
@@ -322,7 +321,7 @@ class QueueDesk:
 
     def _publish(self) -> None:
         """Send the queue if it has changed."""
-        self._news.publish(self.queue, self._broken(), self._busy() or self._wait)
+        self._news.publish(self.queue, self._broken(), self._wait or self._busy())
 
     def _broken(self) -> str:
         return self.problem or (self.changes.broken if self.changes is not None else "")

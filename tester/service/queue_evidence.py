@@ -42,6 +42,12 @@ def evidence_of(desk: Desk, found: Assessment, attested: Attested | None, busy: 
     return (*kept, *(check for check in own if not (check.name == FREE and check.ok and free)))
 
 
+def objection(desk: Desk) -> str:
+    """Return why an item that is taken must not begin after all; "" if it may. Its record took some milliseconds."""
+    check = _alarms(desk)
+    return "" if check.ok else f"{check.name}: {check.text}"
+
+
 def _own(desk: Desk, attested: Attested | None, busy: str) -> Iterator[Check]:
     yield Check(FREE, not busy, busy or "nothing else is under way")
     yield _alarms(desk)

@@ -85,12 +85,16 @@ class ServiceSession(Session):
         self._meanwhile = meanwhile
         self._expected: Estimate | None = None
         self._punctual = Punctuality()
+        self.accepts: Callable[[Prepared], str] = lambda _plan: ""
+        """Returns why the planned run must not begin after all, "" if it may."""
 
     def prepare(self) -> Prepared:
         """Plan the recipe in a process of its own while serving clients; STOP ends it."""
         o = self.options
         plan = planned(Task(o.recipe, o.rig, o.overrides, o.accept_risk), self._meanwhile)
         self._expected = plan.expected
+        if why := self.accepts(plan):
+            raise CannotStartError(why)
         return plan
 
     def aside(self, work: Callable[[], Got]) -> Got:

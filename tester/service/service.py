@@ -42,6 +42,8 @@ from tester.service.interrupted import interrupted_runs, is_interrupted
 from tester.service.item_notice import item_end
 from tester.service.preflight import left_on_rig, past_of
 from tester.service.queue_desk import QueueDesk, QueueRig
+from tester.service.queue_evidence import objection
+from tester.service.queue_run import note_of, options_of, work_of
 from tester.service.running import LOOK_S, RunScreen, ServiceSession, aside, open_record
 from tester.service.service_link import Order
 from tester.service.state_publisher import Desk, do_nothing
@@ -183,14 +185,16 @@ class Service:
         if refused[0]:
             self.orders.job = None
             return
+        if why := objection(desk):
+            self.orders.job = None
+            queue.returned(item, why)
+            self._settled()
+            return
         desk.run = None
-        options = SessionOptions(
-            queue.recipe(item), self.options.rig, (*self.options.overrides, *item.overrides), self.options.accept_risk,
-            self.options.runs, item.seed, item.speed, operator=item.operator or item.by,
-        )  # fmt: skip
-        notes = "; ".join(text for text in (item.notes, f"item {item.id} of the queue, added by {item.by}") if text)
+        options = options_of(item, queue.rig, queue.recipe(item))
+        work = work_of(queue.queue.entry(item.id))
         view, problem = self._session(
-            order, options, item.yes, notes, lambda session: session.run(), lambda run: queue.began(item, run)
+            order, options, item.yes, note_of(item), work, lambda run: queue.began(item, run)
         )
         self.orders.job = None
         if view is None:

@@ -26,6 +26,7 @@ from tester.tui.gone import TITLE, SmallPanel, death_text
 from tester.tui.host import HostApp, Keys, TuiOptions, View
 from tester.tui.pages.bus import BusPage
 from tester.tui.pages.manual_page import ManualPage
+from tester.tui.pages.queue_page import QueuePage
 from tester.tui.pages.recipes import RecipesView
 from tester.tui.pages.results_page import ResultsView
 from tester.tui.pages.ring_page import RingPage
@@ -60,7 +61,7 @@ EVERYWHERE = """\
 On every screen
 F12, Ctrl+X  STOP: controlled software stop, at once, no question. Not an emergency stop: that is hardware.
 F9, Ctrl+F   FAST STOP: quick stop of both drives, the same way; latched until acknowledged.
-F2 … F7      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
+F2 … F8      the screens.   Ctrl+P  all commands.   F1  this help.   Esc  closes a dialog.
 space  HOLD    r  resume    x  abort…    a  acknowledge
 q, Ctrl+C    detach: the run continues; `tester tui` comes back.
 """
@@ -116,6 +117,7 @@ class TesterApp(HostApp):
         yield ResultsView(id="results")
         yield BusPage(id="bus")
         yield RingPage(id=RING)
+        yield QueuePage(id="queue")
 
     def on_mount(self) -> None:
         """Connect to the service."""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from tester.base import clock
 from tester.base.screen import UNKNOWN, MachineView, Value
+from tester.queue.view import QueueView
 from tester.service.client import Client, Gone, Lost
 from tester.service.protocol import (
     EVENTS_KEPT,
@@ -19,6 +20,7 @@ from tester.service.protocol import (
     Hello,
     MachineMessage,
     PlanMessage,
+    QueueMessage,
     ServerMessage,
 )
 from tester.service.protocol import Snapshot as SnapshotMessage
@@ -49,6 +51,7 @@ class ScreenScene:
     now: Callable[[], float] = clock.monotonic
     state: StateView | None = None
     plan: PlanView | None = None
+    queue: QueueView | None = None
     events: deque[Event] = field(default_factory=lambda: deque[Event](maxlen=EVENTS_KEPT))
     trend: deque[tuple[float | None, ...]] = field(
         default_factory=lambda: deque[tuple[float | None, ...]](maxlen=TREND_ROWS)
@@ -104,6 +107,8 @@ class ScreenScene:
             self.events.append(message)
         elif isinstance(message, PlanMessage):
             self.plan = message.plan
+        elif isinstance(message, QueueMessage):
+            self.queue = message.queue
         elif isinstance(message, MachineMessage):
             self.machine = message.machine
             self.trend.clear()
@@ -117,6 +122,7 @@ class ScreenScene:
 
     def _greet(self, hello: Hello) -> None:
         self.state, self.plan, self.received_s = hello.state, hello.plan, self.now()
+        self.queue = hello.queue
         if not hello.complete or hello.service != self.service:
             self.events.clear()
         self.service = hello.service

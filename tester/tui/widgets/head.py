@@ -14,7 +14,8 @@ from tester.tui.widgets.panel_base import ABNORMAL, FAINT, NOTICE, WARNING, Pane
 
 Tabs = tuple[tuple[str, str, str], ...]
 TABS: Tabs = (("f2", "Recipes", "recipes"), ("f3", "Run", "run"), ("f4", "Manual", "manual"),
-        ("f5", "Results", "results"), ("f6", "Bus", "bus"), ("f7", "Ring", "ring"))  # fmt: skip
+        ("f5", "Results", "results"), ("f6", "Bus", "bus"), ("f7", "Ring", "ring"),
+        ("f8", "Queue", "queue"))  # fmt: skip
 """Key, title, id of each screen."""
 RING: Final = "ring"
 """Id of the screen that only a machine with a ring has (tester.base.screen.MachineView)."""
