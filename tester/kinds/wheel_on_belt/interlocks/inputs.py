@@ -130,10 +130,12 @@ class Inputs(ScanInputs):
 
     def seldom(self) -> tuple[object, ...] | None:
         r, demand, out, heat, setpoints = self.readings, self.demand, self.setpoints, self.heat, self.hub_setpoints
+        # None where no heat is wanted: a NaN is unequal to itself, and would be a change in every scan.
+        wanted_c = demand.surface_c if demand.surface_c == demand.surface_c else None
         return (
             r.safety_chain, r.guard_closed, r.bus_fault, r.drive_fault, r.foreign_master, r.device_fault, r.line_errors,
             r.drives_enabled, r.contactor_closed, r.surface_c, r.surface_valid, r.surface_silent, r.hub_c,
-            r.heat_percent, r.jacket_valid, r.jacket_silent, demand.enabled, demand.surface_c, out.heat, out.contactor,
+            r.heat_percent, r.jacket_valid, r.jacket_silent, demand.enabled, wanted_c, out.heat, out.contactor,
             self.confirmed, self.attended, self.pressing, self.turning, self.model_c, self.surface.jump_k,
             self.jacket.jump_k, self.jacket.coolest_c, setpoints[0][1] if setpoints else None, heat.unseen_k,
             heat.ungiven_k, heat.still_k, heat.put_w, heat.shown_w, heat.lack_j, heat.may_lack_j,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from math import isfinite
+from math import isfinite, nan
 from typing import Final, NamedTuple
 
 from tester.inputs.recipe.plan import Soak
@@ -134,7 +134,7 @@ class RestStep:
         self.rest = step
         self.moves = Sequence(Lift(), Turn(0.0, 0.0), Power(False))
         self.standing = False
-        self.began_s = float("nan")
+        self.began_s = nan
         self.shown_s = float("-inf")
         self.late: Activity[Context] | None = None
         self.ask_when_late = ask_when_late
@@ -146,7 +146,7 @@ class RestStep:
 
     def step(self, ctx: Context) -> bool:
         """Done when rested."""
-        ctx.demand.surface_c = float("nan")
+        ctx.demand.surface_c = nan
         if not self.standing:
             self.standing = self.moves.step(ctx)
             return False
@@ -191,7 +191,7 @@ class CoolDown:
         self.below_c = step.hub_below_c
         self.moves = Sequence(Power(True), Lift(), Turn(creep_m_s, creep_m_s))
         self.turning = False
-        self.began_s = float("nan")
+        self.began_s = nan
         self.shown_s = float("-inf")
         self.trend = TemperatureTrend()
 
@@ -201,7 +201,7 @@ class CoolDown:
 
     def step(self, ctx: Context) -> bool:
         """Done when cool, or out of time (the following prompt to install shows the temperature)."""
-        ctx.demand.surface_c = float("nan")
+        ctx.demand.surface_c = nan
         if not self.turning:
             self.turning = self.moves.step(ctx)
             return False

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from math import nan
 from typing import Final
 
 from tester.inputs.recipe.plan import Mounted
@@ -37,7 +38,7 @@ class ShowContact:
 
     def step(self, ctx: Context) -> bool:
         """Done when the contact is checked, or when the zero is not trustworthy: no load is applied with it."""
-        ctx.demand.surface_c = float("nan")
+        ctx.demand.surface_c = nan
         if self.tare is None:
             self.tare = TakeTare(REFERENCE_TARE_S, self.reference)
             self.moves = Sequence(Power(True), Straighten(), self.tare, FirstContact())
@@ -74,7 +75,7 @@ class InstallWheel:
 
     def step(self, ctx: Context) -> bool:
         """Done when the wheel is mounted and the cell tared."""
-        ctx.demand.surface_c = float("nan")
+        ctx.demand.surface_c = nan
         if not self.mounted:
             self.mounted = self.ask.step(ctx)
             return False
@@ -190,7 +191,7 @@ class PreGrindStep:
 
     def step(self, ctx: Context) -> bool:
         """Done when ground and lifted."""
-        ctx.demand.surface_c = float("nan")
+        ctx.demand.surface_c = nan
         if self.grind.counting and (is_due(ctx) or informs(ctx)):
             self.grind.counting = False
             self.moves = Sequence(ZeroCheck(self.pre_grind.wheel_speed_m_s, self.reference_tare), self._moves())

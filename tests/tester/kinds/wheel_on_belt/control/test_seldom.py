@@ -35,6 +35,16 @@ def test_they_are_evaluated_again_only_after_a_change(bench: Bench) -> None:
         assert len(asked) == times
 
 
+def test_no_wanted_temperature_is_no_change(bench: Bench) -> None:
+    view, table = bench.control.view, RigTable(TABLE, bench.control.view.parameters)
+    asked: list[object] = []
+    table.after_change.states = ((lambda v: asked.append(v) is not None, None),)
+    for text, times in (("41", 1), ("nan", 2), ("nan", 2), ("nan", 2), ("41", 3)):
+        view.demand.surface_c = float(text)  # another object each time, as steps make it
+        table.held(view)
+        assert len(asked) == times
+
+
 def test_inputs_that_do_not_say_what_they_hold_have_them_evaluated_in_every_scan(bench: Bench) -> None:
     view, table = bench.control.view, RigTable(TABLE, bench.control.view.parameters)
     asked: list[object] = []
