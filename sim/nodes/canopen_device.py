@@ -202,9 +202,13 @@ class CanopenDevice:
     def reschedule(self) -> None:
         """Find the next timer."""
         due_s = self._application_due()
-        for other_s in (self._boot_at, self._consumer_at, self.pdos.due_s):
-            if other_s < due_s:  # a call of min costs three times as much, and this runs several times a scan
-                due_s = other_s
+        # Comparisons: a call of min or a loop costs several times as much, and this runs several times a scan.
+        if self._boot_at < due_s:
+            due_s = self._boot_at
+        if self._consumer_at < due_s:
+            due_s = self._consumer_at
+        if self.pdos.due_s < due_s:
+            due_s = self.pdos.due_s
         self.due_s = due_s
 
     def fire(self, t: float) -> None:

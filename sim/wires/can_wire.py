@@ -268,8 +268,12 @@ class CanWire(CanListeners):
                 due = beat.due_s
                 if due <= now and (first is None or (due, beat.can_id) <= first[:2]):
                     del beats[0]
-                    beat.due_s = due + beat.period_s
-                    self._queue(beat)
+                    beat.due_s = next_s = due + beat.period_s
+                    last = beats[-1] if beats else beat
+                    if last.due_s < next_s or (last.due_s == next_s and last.can_id <= beat.can_id):
+                        beats.append(beat)  # as nearly always
+                    else:
+                        self._queue(beat)
                     if due < self._busy_s:
                         due = self._busy_s
                     if quick:
@@ -292,7 +296,7 @@ class CanWire(CanListeners):
             self._find_urgent(now)
 
     def _queue(self, beat: Beat) -> None:
-        """Insert a periodic frame by its time, then its identifier: nearly always at the end."""
+        """Insert a periodic frame by its time, then its identifier."""
         beats = self._beats
         at = len(beats)
         while at > 0:
