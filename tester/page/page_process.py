@@ -11,6 +11,7 @@ from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import cast
 
 from websockets.asyncio.server import serve
 
@@ -114,11 +115,13 @@ async def host_page(options: PageOptions, write: Callable[[str], object], began:
         desk = PageDesk(reception, f"{scheme}://{addresses[-1]}:{options.port}/")
         terminal = PageTerminal(desk, write)
         reception.changed = terminal.show
+        # asyncio listens at several addresses; the library's type names one
         async with (
             desk.open(options.address),
             serve(
-                reception.serve, addresses, options.port, ssl=tls, process_request=reception.admit, compression=None,
-                max_size=LONGEST, write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
+                reception.serve, cast("str", addresses), options.port, ssl=tls,
+                process_request=reception.admit, compression=None, max_size=LONGEST,
+                write_limit=BACKLOG_BYTES, close_timeout=CLOSE_S, server_header=None,
                 create_connection=counted(reception.strangers), logger=sparse_logger(LOG),
             ),
         ):  # fmt: skip

@@ -181,8 +181,11 @@ class Reception:
         if visitor.busy:
             visitor.outbox.reply(refused(message.id, "too many at once: wait for the answers"))
         else:
-            work = self._command if isinstance(message, PageCommand) else self._ask
-            visitor.start(asyncio.create_task(self._answered(visitor, message.id, work(visitor, message))))
+            if isinstance(message, PageCommand):
+                work = self._command(visitor, message)
+            else:
+                work = self._ask(visitor, message)
+            visitor.start(asyncio.create_task(self._answered(visitor, message.id, work)))
 
     async def _stop(self, visitor: Visitor, number: int, *, fast: bool) -> None:
         reason = await visitor.stop(fast=fast)

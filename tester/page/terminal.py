@@ -57,7 +57,8 @@ class PageTerminal:
 
     def typed(self, word: str) -> None:
         """Make a code for a typed role; an empty line: for the role of the last one."""
-        role = next((role for role in self._desk.view().roles if role == (word or self._role)), None)
+        wanted = word or self._role
+        role: Role | None = next((role for role in self._desk.view().roles if role == wanted), None)
         if role is None:
             self._write(f"         expected {', '.join(self._desk.view().roles)}, or Enter")
         else:

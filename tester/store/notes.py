@@ -9,7 +9,7 @@ import json
 import re
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Final
+from typing import Any, Final, cast
 
 from tester.base.words import plain_text
 from tester.store.amend import amended
@@ -88,12 +88,9 @@ def tags_in(notes: list[RunNote]) -> list[str]:
 
 def _of(event: StoredEvent) -> RunNote:
     try:
-        data: object = json.loads(event.data) if event.data else {}
-    except ValueError:
-        data = {}
-    match data:
-        case {"by": str(by), "tags": [*tags], "manifest_before": str(before)}:
-            only_tags = bool(tags) and event.text.startswith("tags: ")
-            return RunNote(event.utc, by, "" if only_tags else event.text, tuple(map(str, tags)), before)
-        case _:
-            return RunNote(event.utc, "", event.text)
+        data = cast("dict[str, Any]", json.loads(event.data))
+        tags = tuple(str(tag) for tag in data["tags"])
+        by, before = str(data["by"]), str(data["manifest_before"])
+    except (ValueError, TypeError, KeyError):  # a note of the run's start has no data
+        return RunNote(event.utc, "", event.text)
+    return RunNote(event.utc, by, "" if tags and event.text.startswith("tags: ") else event.text, tags, before)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING, Annotated, Any, Final
 import numpy as np
 from pydantic import Field, TypeAdapter, ValidationError
 
-from tester.base.words import Json
 from tester.page.front import in_one_line
 from tester.page.stored.moments import moment_page
 from tester.page.stored.overlays import MOST as MOST_LAID_OVER
@@ -109,16 +108,16 @@ class AskNote(StrictMessage):
     tags: Annotated[tuple[Name, ...], Field(max_length=20)] = ()
 
 
-def _runs(cache: RunCache, asked: AskRuns, _by: str) -> dict[str, Json]:
+def _runs(cache: RunCache, asked: AskRuns, _by: str) -> dict[str, Any]:
     until = f"{asked.until}\uffff" if asked.until else ""  # the whole of that day
     with closing(open_catalogue(cache.under)) as catalogue:
         refresh(catalogue, cache.under)
         found = catalogue.runs(WantedRuns(asked.compound, asked.since, until, asked.recipe))
-    listed: list[Json] = []
+    listed: list[Any] = []
     for run in found:
         tags = cache.tags(run.name)
         if _wanted(run, tags, asked):
-            listed.append({**entry_json(run), "tags": list[Json](tags)})
+            listed.append({**entry_json(run), "tags": list[Any](tags)})
     return {"runs": listed}
 
 
@@ -132,17 +131,17 @@ def _wanted(run: RunEntry, tags: Sequence[str], asked: AskRuns) -> bool:
     )
 
 
-def _run(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Json]:
+def _run(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Any]:
     folder = cache.folder(asked.run)
     with RunReader(folder) as reader:
         return run_page(reader, cache.results(folder))
 
 
-def _condition(cache: RunCache, asked: AskCondition, _by: str) -> dict[str, Json]:
+def _condition(cache: RunCache, asked: AskCondition, _by: str) -> dict[str, Any]:
     return condition_page(cache.results(cache.folder(asked.run)), asked.n)
 
 
-def _samples(cache: RunCache, asked: AskSamples, _by: str) -> dict[str, Json]:
+def _samples(cache: RunCache, asked: AskSamples, _by: str) -> dict[str, Any]:
     with RunReader(cache.folder(asked.run)) as reader:
         pyramid = cache.pyramid(reader)
         places = {column.key: place for place, column in enumerate(pyramid.columns)}
@@ -162,26 +161,26 @@ def _packed(values: NDArray[Any], form: str) -> str:
     return b64encode(np.ascontiguousarray(values, dtype=form).tobytes()).decode()
 
 
-def _prepare(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Json]:
+def _prepare(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Any]:
     with RunReader(cache.folder(asked.run)) as reader:
         cache.pyramid(reader)
     return {}
 
 
-def _moment(cache: RunCache, asked: AskMoment, _by: str) -> dict[str, Json]:
+def _moment(cache: RunCache, asked: AskMoment, _by: str) -> dict[str, Any]:
     folder = cache.folder(asked.run)
     with RunReader(folder) as reader:
         return moment_page(reader, cache.results(folder), asked.t_s)
 
 
-def _overlay(cache: RunCache, asked: AskOverlay, _by: str) -> dict[str, Json]:
+def _overlay(cache: RunCache, asked: AskOverlay, _by: str) -> dict[str, Any]:
     folders = [cache.folder(run) for run in dict.fromkeys(asked.runs)]
     with ExitStack() as stack:
         runs = [(stack.enter_context(RunReader(folder)), cache.results(folder)) for folder in folders]
         return overlay_page(runs, asked.against)
 
 
-def _exclude(cache: RunCache, asked: AskExclude, by: str) -> dict[str, Json]:
+def _exclude(cache: RunCache, asked: AskExclude, by: str) -> dict[str, Any]:
     folder = cache.folder(asked.run)
     repeats = [asked.repeat]
     if not asked.repeat:
@@ -195,12 +194,12 @@ def _exclude(cache: RunCache, asked: AskExclude, by: str) -> dict[str, Json]:
     return {"repeats": len(repeats)}
 
 
-def _note(cache: RunCache, asked: AskNote, by: str) -> dict[str, Json]:
+def _note(cache: RunCache, asked: AskNote, by: str) -> dict[str, Any]:
     record_note(cache.folder(asked.run), asked.text, asked.tags, by)
     return {}
 
 
-Asked = tuple[TypeAdapter[Any], Callable[[RunCache, Any, str], dict[str, Json]]]
+Asked = tuple[TypeAdapter[Any], Callable[[RunCache, Any, str], dict[str, Any]]]
 ASKED: Final[Mapping[str, Asked]] = {
     "runs": (TypeAdapter(AskRuns), _runs),
     "run": (TypeAdapter(AskRun), _run),
@@ -219,7 +218,7 @@ WRITING: Final = ("exclude", "note")
 """Those that write on record: they need the role control."""
 
 
-def answer(cache: RunCache, query: str, keys: Mapping[str, Any], by: str) -> dict[str, Json]:
+def answer(cache: RunCache, query: str, keys: Mapping[str, Any], by: str) -> dict[str, Any]:
     """Answer a question; ``by``: the page that asks, for the record. Raises QuestionError, TroubleError, OSError."""
     adapter, work = ASKED[query]
     try:

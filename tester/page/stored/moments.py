@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from math import isfinite
+from typing import Any
 
-from tester.base.words import Json, finite
+from tester.base.words import finite
 from tester.results.run_results import RunResults
 from tester.service.protocol import Event
 from tester.service.recorded_steps import present_of, recorded_steps
@@ -24,7 +25,7 @@ EVENTS = 30
 """Events up to the moment that are listed."""
 
 
-def moment_page(reader: RunReader, results: RunResults, at_s: float) -> dict[str, Json]:
+def moment_page(reader: RunReader, results: RunResults, at_s: float) -> dict[str, Any]:
     """Return what the screen showed at a moment, rig seconds. Raises StoreError."""
     name = results.run.info.name
     events = [Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, name) for e in reader.events()]
@@ -39,7 +40,7 @@ def moment_page(reader: RunReader, results: RunResults, at_s: float) -> dict[str
     }  # fmt: skip
 
 
-def _values(reader: RunReader, results: RunResults, at_s: float) -> list[Json]:
+def _values(reader: RunReader, results: RunResults, at_s: float) -> list[Any]:
     quantities, row = results.quantities, _sample_at(reader, at_s)
     condition = next(
         (
@@ -50,7 +51,7 @@ def _values(reader: RunReader, results: RunResults, at_s: float) -> list[Json]:
         None,
     )
     info = condition.info if condition is not None else None
-    values: list[Json] = []
+    values: list[Any] = []
     for channel in quantities.shown:
         value = finite_or_none(recorded_value(quantities, channel, row)) if row else None
         setpoint = recorded_setpoint(quantities, channel, row, info).setpoint if row else None

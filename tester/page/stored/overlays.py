@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from math import hypot, isfinite, nan
-from typing import Final
+from typing import Any, Final
 
 from tester.base.axes import Axis, condition_words
-from tester.base.words import Json, finite
+from tester.base.words import finite
 from tester.page.stored.run_cache import QuestionError
 from tester.results.columns import unit_of
 from tester.results.compared import Pair, pairs
@@ -22,7 +22,7 @@ ALONG: Final = {"repeat": ("repeat", ""), "time": ("rig time", "s"), "sliding": 
 """What repeats may be aligned on, with title and unit."""
 
 
-def overlay_page(runs: Sequence[tuple[RunReader, RunResults]], against: str) -> dict[str, Json]:
+def overlay_page(runs: Sequence[tuple[RunReader, RunResults]], against: str) -> dict[str, Any]:
     """Return one to six runs against an axis of their conditions, or repeat by repeat. Raises QuestionError."""
     if not 1 <= len(runs) <= MOST:
         raise QuestionError(f"runs: expected 1 to {MOST}")
@@ -63,14 +63,14 @@ def _axis(results: Sequence[RunResults], name: str) -> Axis:
     raise QuestionError(f"against: no axis {name!r} of all these runs (expected one of {known})")
 
 
-def _point(row: TableRow, axis: Axis) -> dict[str, Json]:
+def _point(row: TableRow, axis: Axis) -> dict[str, Any]:
     return {
         "x": axis.of(row.info.setpoint), "mu": finite(row.result.mu), "u": finite(row.result.budget.expanded),
         "label": condition_words(row.info.setpoint), "n": row.info.condition, "compound": row.info.compound,
     }  # fmt: skip
 
 
-def _difference(pair: Pair, axis: Axis) -> dict[str, Json] | None:
+def _difference(pair: Pair, axis: Axis) -> dict[str, Any] | None:
     """Return the difference of a matched pair with its expanded uncertainty; None without one."""
     if not isfinite(pair.found.value):
         return None
@@ -78,7 +78,7 @@ def _difference(pair: Pair, axis: Axis) -> dict[str, Json] | None:
     return _compared(pair, axis, pair.found.value, u)
 
 
-def _ratio(pair: Pair, axis: Axis) -> dict[str, Json] | None:
+def _ratio(pair: Pair, axis: Axis) -> dict[str, Any] | None:
     """Return the ratio of a matched pair, and its expanded uncertainty from that of the difference; None without one.
 
     The ratio is 1 + difference / first, so what both runs share (the same calibration) does not count twice. The
@@ -92,15 +92,15 @@ def _ratio(pair: Pair, axis: Axis) -> dict[str, Json] | None:
     return _compared(pair, axis, 1.0 + off, u)
 
 
-def _compared(pair: Pair, axis: Axis, y: float, u: float) -> dict[str, Json]:
+def _compared(pair: Pair, axis: Axis, y: float, u: float) -> dict[str, Any]:
     setpoint = pair.either.info.setpoint
     return {"x": axis.of(setpoint), "y": y, "u": finite(u), "label": condition_words(setpoint)}
 
 
-def _repeats(reader: RunReader, results: RunResults, along: str) -> list[Json]:
+def _repeats(reader: RunReader, results: RunResults, along: str) -> list[Any]:
     """Return the committed repeats of a run along their number, rig time or the sliding of their piece."""
     table, travels = repeats_table(results), reader.travels()
-    points: list[Json] = []
+    points: list[Any] = []
     for row in table.rows:
         travel = travels.get(row.repeat.key)
         x = {

@@ -180,7 +180,7 @@ def _made(reader: RunReader, columns: Sequence[DrawnColumn], after: int) -> Buck
     made: list[Buckets] = []
     with ThreadPoolExecutor(THREADS) as pool:
         while chunk := list(islice(rows, AT_ONCE)):
-            made += pool.map(lambda row: of.buckets(row, FACTOR), chunk)
+            made += pool.map(of.eights, chunk)
     return _joined(made) if made else _nothing(len(columns))
 
 
@@ -192,6 +192,10 @@ class _Blocks:
         self._quantities = reader.quantities()
         self._conditions = reader.conditions() if any(column.axis for column in columns) else []
         self._columns = columns
+
+    def eights(self, row: Row) -> Buckets:
+        """Return a block's buckets of the first level. Raises StoreError."""
+        return self.buckets(row, FACTOR)
 
     def buckets(self, row: Row, size: int) -> Buckets:
         """Return a block's buckets of ``size`` samples; the last may have fewer. Raises StoreError."""

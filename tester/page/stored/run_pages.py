@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from itertools import zip_longest
 from math import isfinite
-from typing import Final
+from typing import Any, Final
 
 from tester.analysis.results import ConditionStatus
 from tester.base.axes import Axis, condition_words
-from tester.base.words import Json, finite
+from tester.base.words import finite
 from tester.page.stored.drawn_columns import drawn_columns
 from tester.page.stored.run_cache import QuestionError
 from tester.results.columns import Table, unit_of
@@ -27,7 +28,7 @@ MOST_MARKS = 5000
 SEVERE: Final = ("warning", "alarm", "trip")
 
 
-def run_page(reader: RunReader, results: RunResults) -> dict[str, Json]:
+def run_page(reader: RunReader, results: RunResults) -> dict[str, Any]:
     """Return everything about a run but its samples."""
     run, info = results.run, results.run.info
     events = list(reader.events())
@@ -53,11 +54,11 @@ def run_page(reader: RunReader, results: RunResults) -> dict[str, Json]:
         "regions": list(_regions(reader, results, events, length_s)),
         "columns": [column.as_json() for column in drawn_columns(results.quantities)],
         "notes": [{"utc": note.utc, "by": note.by, "text": note.text} for note in notes_of(reader) if note.text],
-        "tags": list[Json](tags_of(reader)),
+        "tags": list[Any](tags_of(reader)),
     }  # fmt: skip
 
 
-def condition_page(results: RunResults, number: int) -> dict[str, Json]:
+def condition_page(results: RunResults, number: int) -> dict[str, Any]:
     """Return a condition and its repeats. Raises QuestionError for a number that the run does not have."""
     table = conditions_table(results)
     row = next((r for r in table.rows if r.measured is not None and r.info.condition == number), None)
@@ -76,13 +77,13 @@ def _length_s(reader: RunReader, results: RunResults) -> float:
     return max(results.run.rig_seconds, float(last) if isinstance(last, int | float) else 0.0)
 
 
-def axis_values(row: ConditionRow, axes: Iterable[Axis]) -> dict[str, Json]:
+def axis_values(row: ConditionRow, axes: Iterable[Axis]) -> dict[str, Any]:
     """Return a condition's place: compound, and the value of each axis in its unit for people."""
     setpoint = row.info.setpoint
     return {"compound": setpoint.compound, **{axis.name: axis.of(setpoint) for axis in axes}}
 
 
-def _value(row: ConditionRow, table: Table[ConditionRow]) -> dict[str, Json]:
+def _value(row: ConditionRow, table: Table[ConditionRow]) -> dict[str, Any]:
     """Return coefficient and U, in full and in the words of `tester show`."""
     mu, u = table["mu"], table["u_expanded"]
     compound = table["u_expanded_compound"]
@@ -92,7 +93,7 @@ def _value(row: ConditionRow, table: Table[ConditionRow]) -> dict[str, Json]:
     }  # fmt: skip
 
 
-def _condition(row: ConditionRow, table: Table[ConditionRow], results: RunResults) -> dict[str, Json]:
+def _condition(row: ConditionRow, table: Table[ConditionRow], results: RunResults) -> dict[str, Any]:
     return {
         "n": row.info.condition, "text": condition_words(row.info.setpoint), "axes": axis_values(row, results.axes),
         **_value(row, table), "repeats": row.counts.valid, "asked": row.counts.asked, "made": row.counts.made,
@@ -102,7 +103,7 @@ def _condition(row: ConditionRow, table: Table[ConditionRow], results: RunResult
     }  # fmt: skip
 
 
-def _combined(row: ConditionRow, table: Table[ConditionRow]) -> dict[str, Json]:
+def _combined(row: ConditionRow, table: Table[ConditionRow]) -> dict[str, Any]:
     return {"conditions": [m.info.condition for m in row.row.replicates], **_value(row, table)}
 
 
@@ -124,7 +125,7 @@ def condition_state(row: ConditionRow, status: RunStatus) -> str:
     return "running" if isfinite(measured.condition.started_s) else "planned"
 
 
-def _repeat(one: CommittedRepeat, table: Table[CommittedRepeat]) -> dict[str, Json]:
+def _repeat(one: CommittedRepeat, table: Table[CommittedRepeat]) -> dict[str, Any]:
     word = one.measured.left_out_by(one.repeat)
     by_hand = {"utc": word.utc, "by": word.operator, "reason": word.reason} if word is not None else None
     return {
@@ -136,14 +137,14 @@ def _repeat(one: CommittedRepeat, table: Table[CommittedRepeat]) -> dict[str, Js
     }  # fmt: skip
 
 
-def _mark(event: StoredEvent) -> dict[str, Json]:
+def _mark(event: StoredEvent) -> dict[str, Any]:
     severity = event.severity if event.severity in SEVERE else "info"
     return {"t_s": event.t_s, "kind": event.kind, "text": event.text, "severity": severity, "utc": event.utc}
 
 
 def _regions(
     reader: RunReader, results: RunResults, events: Iterable[StoredEvent], length_s: float
-) -> Iterator[dict[str, Json]]:
+) -> Iterator[dict[str, Any]]:
     """Yield the stretches of rig time with a name: repeats, holds, trips, and what was mounted."""
     for repeat in reader.repeats(attempts=True):
         end_s = repeat.result.ended_s
@@ -154,17 +155,17 @@ def _regions(
         end_s = trip.acknowledged_s if isfinite(trip.acknowledged_s) else length_s
         yield _region(trip.t_s, end_s, "alarm", trip.text or trip.interlock)
     mounted = sorted(results.pieces, key=lambda piece: piece.installed_s)
-    for piece, following in zip(mounted, [*mounted[1:], None], strict=True):
+    for piece, following in zip_longest(mounted, mounted[1:]):
         end_s = following.installed_s if following is not None else length_s
         yield _region(piece.installed_s, end_s, "wheel", f"{results.worn} {piece.piece} ({piece.compound})")
 
 
-def _region(from_s: float, to_s: float, kind: str, text: str) -> dict[str, Json]:
+def _region(from_s: float, to_s: float, kind: str, text: str) -> dict[str, Any]:
     first = from_s if isfinite(from_s) else 0.0
     return {"from_s": first, "to_s": max(first, to_s), "kind": kind, "text": text}
 
 
-def _holds(events: Iterable[StoredEvent], length_s: float) -> Iterator[dict[str, Json]]:
+def _holds(events: Iterable[StoredEvent], length_s: float) -> Iterator[dict[str, Any]]:
     """Yield the holds, by the changes of mode in the journal."""
     began: StoredEvent | None = None
     for event in events:

@@ -374,6 +374,16 @@ def test_options_that_do_not_go_together(options: PageOptions, says: str) -> Non
         check_options(options)
 
 
+def test_in_the_clear_a_page_on_the_network_controls_nothing(tmp_path: Path) -> None:
+    async def story(stage: PageStage) -> None:
+        view = await stage.desk(NewCode("control"))
+        assert view.roles == ("look", "stop") and view.code is not None and view.code.what == "look"
+        request = f"GET /none HTTP/1.1\nHost: 127.0.0.2:{stage.port}\n\n"
+        assert (await stage.http(request)).startswith(b"HTTP/1.1 404 ")
+
+    play(tmp_path, story, lan="127.0.0.2")
+
+
 def test_a_second_page_for_a_service_is_refused(tmp_path: Path) -> None:
     async def story(stage: PageStage) -> None:
         from tester.page.page_process import host_page

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import shutil
+import sqlite3
 from base64 import b64decode
 from pathlib import Path
 from typing import Any
@@ -18,6 +19,7 @@ from tester.page.stored.run_cache import QuestionError, RunCache
 from tester.results.exclude import CannotExcludeError
 from tester.results.verify import verify
 from tests.tester.service.views import HOSTILE
+from tests.tester.store.build import RUN, small_run
 
 
 def ask(under: Path, query: str, **keys: Any) -> Any:
@@ -184,3 +186,11 @@ def test_an_overlay_of_seven_runs_is_refused(runs: Path, run: Path) -> None:
         ask(runs, "overlay", runs=[f"r{n}" for n in range(7)], against="load")
 
 
+
+
+def test_a_run_in_which_nothing_is_mounted_yet_is_shown(tmp_path: Path) -> None:
+    folder = small_run(tmp_path / RUN.name, ([], []), rows=0)
+    with sqlite3.connect(folder / "run.db") as database:
+        database.execute("DELETE FROM piece")
+    page = ask(tmp_path, "run", run=folder.name)
+    assert len(page["conditions"]) == 2 and "wheel" not in {region["kind"] for region in page["regions"]}
