@@ -144,6 +144,27 @@ def test_after_a_restart_the_queue_stands(tmp_path: Path) -> None:
     assert not stage.queues[-1].going
 
 
+def test_an_end_that_a_power_cut_took_from_the_record_is_read_from_the_run(tmp_path: Path) -> None:
+    def first(stage: Stage) -> Script:
+        yield from added(stage, ADD, ADD)
+        yield stage.order(QueueStart())
+        yield from until(stage, lambda view: view.items[0].end is not None)
+        yield stage.order(QueueStand())
+        yield from answered(stage, "queue_stand")
+
+    def second(stage: Stage) -> Script:
+        yield from until(stage, lambda view: bool(view.items))
+
+    play(tmp_path, first)
+    record = queue_folder(tmp_path / "runs", RIG, simulated=True) / RECORD
+    lines = record.read_bytes().splitlines(keepends=True)
+    at = next(number for number, line in enumerate(lines) if b'"event":"ended"' in line)
+    record.write_bytes(b"".join(lines[:at]) + lines[at][:-20])
+    stage = play(tmp_path, second)
+    assert states(stage.queues[-1]) == [(1, "done"), (2, "waiting")]
+    assert (item_of(stage, 1).run, stage.queues[-1].going) == (runs(tmp_path)[0], False)
+
+
 def test_stop_ends_the_item_and_makes_the_queue_stand(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from added(stage, ADD, ADD)
