@@ -18,6 +18,7 @@ from tester.tui.widgets.ended_panel import step_value
 from tests.tester.kinds.wheel_on_belt.fit.made import made_run
 from tests.tester.service.views import state
 from tests.tester.tui.stage import Stage, play
+from tests.tester.tui.test_screens import compare
 
 DESIGN = [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3), (25.0, 300.0, 0.3)]
 TITLES = ("1#, 300 mm/s, 100 N, 25 degC", "200 N", "300 N")
@@ -83,6 +84,7 @@ def test_a_small_screen_has_the_last_value_and_the_table(tmp_path: Path) -> None
         await on.show(at_run(folder, 0, "done"), steps(3))
         await on.until(lambda: "Results of one" in on.text(), "the table is shown")
         assert "STOP" in on.line(-1) and one.split(" ± ")[1] in on.text()
+        compare("run-80x24-ended", on.text())
 
     play(act, tmp_path, (80, 24))
 
