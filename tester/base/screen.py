@@ -105,6 +105,43 @@ class AxisView:
 
 
 @dataclass(frozen=True, slots=True)
+class Shape:
+    """One part of a drawing, in its units.
+
+    ``points``: of a line x, y of each corner; of a box left, top, width, height, radius of its corners; of a circle x
+    and y of its centre, radius; of a text x and y of its start. ``text``: that of a text. ``role``: a part of the
+    machine (body), the part that is tested (rubber), what it touches (surface), an arrow of a force or a movement
+    (arrow), an enclosure (shell).
+    """
+
+    form: Literal["line", "box", "circle", "text"]
+    points: tuple[float, ...]
+    role: Literal["body", "rubber", "surface", "arrow", "shell"] = "body"
+    text: str = ""
+
+
+@dataclass(frozen=True, slots=True)
+class Anchor:
+    """The place of a value in a drawing: its key, and where its text begins, is centred or ends."""
+
+    key: str
+    x: float
+    y: float
+    side: Literal["start", "middle", "end"] = "start"
+
+
+@dataclass(frozen=True, slots=True)
+class Drawing:
+    """A machine seen from the side, as data: size, the same in words, shapes, places of values."""
+
+    width: float
+    height: float
+    text: str
+    shapes: tuple[Shape, ...]
+    anchors: tuple[Anchor, ...]
+
+
+@dataclass(frozen=True, slots=True)
 class MachineView:
     """Constants of a kind of machine, for clients that draw it.
 
@@ -127,6 +164,8 @@ class MachineView:
     """Further checks by a person at a machine without a controller, a sentence each."""
     ring: str = ""
     """Name for people of the slip ring to a device on a turning part; "" where there is none."""
+    drawing: Drawing | None = None
+    """The machine with the places of its values; None: a client lists the values instead."""
 
 
 def axis_views(axes: Axes) -> tuple[AxisView, ...]:

@@ -7,6 +7,7 @@ from typing import Final
 
 from tester.base.screen import Check, HandAxis, MachineView, PlotView, SoakView, axis_views, trend_columns
 from tester.kinds.specimen_on_track.axes import AXES, NAME
+from tester.kinds.specimen_on_track.drawing import DRAWING
 from tester.kinds.specimen_on_track.procedures.steps import TemperAir
 from tester.kinds.specimen_on_track.quantities import QUANTITIES
 from tester.machine.panel import News, RunPanel, Wanted
@@ -33,6 +34,7 @@ MACHINE: Final = MachineView(
     specimen="specimen",
     moves="the track",
     look=("Take the weights off the arm if it is down.",),
+    drawing=DRAWING,
 )
 
 

@@ -12,6 +12,7 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.procedures.condition import MeasureWheelCondition
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import HeatUp, SoakTo
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
+from tester.kinds.wheel_on_belt.served.drawing import DRAWING
 from tester.kinds.wheel_on_belt.served.manual import HAND
 from tester.machine.panel import News, RunPanel, Wanted
 
@@ -39,6 +40,7 @@ MACHINE: Final = MachineView(
     moves="wheel and belt",
     look=("Switch the heating off at the machine if the jacket stays hot.",),
     ring="Slip ring",
+    drawing=DRAWING,
 )
 
 
