@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections import Counter
 from collections.abc import Callable, Iterator
+from concurrent.futures import Future
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from hashlib import sha256
@@ -17,6 +18,7 @@ from tester.base.screen import Check
 from tester.inputs.rig import Rig
 from tester.queue.assess import Assessment, AssessTask
 from tester.queue.decide import CALIBRATION, CEILINGS, DISK, FREE, RECIPE, RIG, SPECIMEN
+from tester.queue.fold import Queue
 from tester.queue.items import Hashes, Needs
 from tester.queue.places import queue_folder
 from tester.queue.record import RECORD, QueueRecord, read_queue
@@ -54,6 +56,8 @@ class World:
     person: bool = False
     """Whether a person has started the queue since the last stop, trip, failure or restart."""
     asks: bool = False
+    stood: bool = False
+    """Whether a person let the queue stand while an item was under way."""
     begun: Counter[int] = field(default_factory=Counter[int])
     """Runs that really began, by item."""
     over: dict[int, RunStatus] = field(default_factory=dict[int, RunStatus])
@@ -141,6 +145,7 @@ class Life:
              patch("tester.service.service.interrupted_runs", lambda _runs: iter(())), \
              patch("tester.base.clock.monotonic", self._tick), \
              patch("tester.base.clock.sleep_until", lambda _s: 0.0), \
+             patch("tester.service.queue_changes.ThreadPoolExecutor", InlineExecutor), \
              patch.object(FreeRoom, "look", _roomy), \
              patch("tester.queue.recover.run_of", self._run_of), \
              patch.object(QueueRecord, "_write", self._writer()), \
@@ -227,6 +232,7 @@ class Life:
             world.person = world.person and skipped
         if status is RunStatus.TRIPPED:
             service.desk.latched = "a trip"
+        world.person = world.person and not world.stood
         world.over[number] = status
         return RunView(f"run-{number}", "", "", "", "", "", 0, True, None, "", status.value, "", 0, ()), ""
 
@@ -295,8 +301,12 @@ class QueueStage(ServiceStage):
     def accept(self, order: Order, result: object = None) -> None:
         if isinstance(result, dict) and "id" in result:
             self.life.world.confirmed.add(int(str(result["id"])))  # pyright: ignore[reportUnknownArgumentType]
+        world = self.life.world
         if isinstance(order.action, QueueStart):
-            self.life.world.person = True
+            world.person, world.stood = True, False
+        if isinstance(order.action, QueueStand) and self.service is not None:
+            world.stood = True  # an item that is taken already goes on
+            world.person = world.person and self.service.queue.queue.under_way is not None
 
     def refuse(self, order: Order, reason: str) -> None:
         self.life.counts["refused starts"] += isinstance(order.action, QueueStart)
@@ -356,10 +366,29 @@ class QueueStage(ServiceStage):
         elif kind == "ack":
             desk.latched = ""
         else:
-            if kind in ("stop", "stand"):
+            if kind == "stop":
                 world.person = False
             return [self.order(actions[kind])]
         return []
+
+
+class InlineExecutor:
+    """Writes at once, in place of a thread, so that a seed gives the same life on every computer."""
+
+    def __init__(self, *_: object, **__: object) -> None:
+        """Take what a pool of threads takes."""
+
+    def submit(self, work: Callable[..., Queue], *given: object) -> Future[Queue]:
+        """Carry out the work now."""
+        future: Future[Queue] = Future()
+        try:
+            future.set_result(work(*given))
+        except BaseException as error:  # noqa: BLE001 - a kill, too, reaches the service by its future
+            future.set_exception(error)
+        return future
+
+    def shutdown(self) -> None:
+        """Do nothing: nothing waits."""
 
 
 def _roomy(room: FreeRoom) -> None:
