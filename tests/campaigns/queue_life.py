@@ -63,7 +63,8 @@ class World:
     over: dict[int, RunStatus] = field(default_factory=dict[int, RunStatus])
     confirmed: set[int] = field(default_factory=set[int])
     """Items whose add was answered."""
-    agreed: dict[int, str] = field(default_factory=dict[int, str])
+    looked: set[int] = field(default_factory=set[int])
+    """Items for which the rig was looked at since they last began."""
 
 
 class KnownPast:
@@ -93,6 +94,8 @@ class FakeAssessor:
         task, world = self._task, self._world
         self._task = None
         assert task is not None
+        if task.then is not None:
+            world.looked.add(int(Path(task.folder).name))
         hashes = Hashes(sha256(world.rig.encode()).hexdigest(), "calibration")
         differs = () if task.then is None or task.then == hashes else (f"the rig file changed to {world.rig}",)
         oks = {FREE: True, RIG: True, SPECIMEN: True, RECIPE: not differs, CALIBRATION: True, DISK: world.disk,
@@ -248,12 +251,14 @@ class Life:
             text
             for text, bad in (
                 ("no person", not world.person),
+                ("not looked at", number not in world.looked),
                 ("alarm", world.alarm),
                 ("disk", not world.disk),
                 ("rig", entry.agreed.rig != sha256(world.rig.encode()).hexdigest()),
             )
             if bad
         ]
+        world.looked.discard(number)
         if wrong:
             self.misses.append(f"item {number} begins without evidence: {', '.join(wrong)}")
 
