@@ -67,7 +67,7 @@ def item_ended(
 def condition_lost(number: str, text: str, utc: str, *, rig: str, run: str, folder: str) -> Notice:
     """Return the notice of a condition without a value. ``text``: the condition and why."""
     return Notice(
-        number, NoticeCause.CONDITION, "condition", text, utc, "it goes on with the next condition",
+        number, NoticeCause.CONDITION, "condition", text, utc, "it continues with the next condition",
         "see whether the next conditions fail alike", "the end of the run", rig, run, folder,
     )  # fmt: skip
 

@@ -121,9 +121,7 @@ class Gateway:
             self.guests.take_state(self._state)
             self._rows.append(row)
             self._greeted.set()
-            message = b'{"state":' + self._state + b',"row":' + row + b',"type":"snapshot"}'
-            for guest in self.guests.values():
-                guest.outbox.newest("snapshot", message)
+            self.guests.newest("snapshot", b'{"state":' + self._state + b',"row":' + row + b',"type":"snapshot"}')
         elif kind == b"e":
             number, _, event = rest.partition(b" ")
             self._events.append((int(number), event))
@@ -132,12 +130,10 @@ class Gateway:
                 self._keep(guest)
         elif kind == b"p":
             self._plan = rest
-            for guest in self.guests.values():
-                guest.outbox.newest("plan", b'{"plan":' + rest + b',"type":"plan"}')
+            self.guests.newest("plan", b'{"plan":' + rest + b',"type":"plan"}')
         elif kind == b"q":
             self.queue.encoded = rest
-            for guest in self.guests.values():
-                guest.outbox.newest("queue", b'{"queue":' + rest + b',"type":"queue"}')
+            self.guests.newest("queue", b'{"queue":' + rest + b',"type":"queue"}')
         elif kind == b"m":
             self._take_machine(rest)
         elif kind == b"a":
@@ -153,9 +149,7 @@ class Gateway:
         elif kind == b"n":
             self._notify(rest)
         elif kind == b"f":
-            for guest in self.guests.values():
-                if guest.frames:
-                    guest.outbox.newest("frames", rest)
+            self.guests.newest("frames", rest)
 
     def _take_machine(self, machine: bytes) -> None:
         """Store the tables of a kind of rig. If they change, drop the trend, whose columns belong to the old kind."""
@@ -171,11 +165,6 @@ class Gateway:
         last = Goodbye("the service has ended", ended=True) if self.ended else Goodbye("the service has died")
         for guest in self.guests.values():
             guest.outbox.reply(encode(last))
-
-    async def all_told(self) -> None:
-        """Wait until every pending message is sent."""
-        while any(len(guest.outbox) for guest in self.guests.values()):
-            await asyncio.sleep(0.01)
 
     # -- a connection -----------------------------------------------------------------------------------------
 

@@ -76,7 +76,7 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
         await asyncio.to_thread(notices.close)
         with suppress(TimeoutError):
             async with asyncio.timeout(CLOSE_S):
-                await gateway.all_told()
+                await gateway.guests.sent()
 
 
 async def serve_link(link: socket.socket) -> None:

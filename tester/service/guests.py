@@ -68,6 +68,17 @@ class Guests(dict[int, Guest]):
         """Forget the mode, which an order may change: it is unknown until the next state."""
         self._mode = ""
 
+    def newest(self, kind: str, message: bytes) -> None:
+        """Send a message of which only the newest counts to every client, frames to those that watch them."""
+        for guest in self.values():
+            if kind != "frames" or guest.frames:
+                guest.outbox.newest(kind, message)
+
+    async def sent(self) -> None:
+        """Wait until every pending message is sent."""
+        while any(len(guest.outbox) for guest in self.values()):
+            await asyncio.sleep(0.01)
+
     def join(self, guest: Guest) -> None:
         """Add a client."""
         self[guest.number] = guest

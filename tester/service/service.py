@@ -240,17 +240,17 @@ class Service:
 
     def _session(
         self, order: Order, options: SessionOptions, yes: bool, notes: str, work: Callable[[ServiceSession], int],
-        told: Callable[[str], None] = do_nothing,
+        began: Callable[[str], None] = do_nothing,
     ) -> tuple[RunView | None, str]:  # fmt: skip
         """Run a session to its end, including its tables. Return the run's last view, None if it did not begin, and the
-        problem. ``told`` receives the run's name when it begins.
+        problem. ``began`` receives the run's name when it begins.
         """
         desk = self.desk
         view = RunView("", "", "", "", "", options.operator, options.seed, self.rig.simulated, options.lapse, "",
                        Outcome.RUNNING.value, "", None, ())  # fmt: skip
 
         def begun(view: RunView) -> None:
-            told(view.name)
+            began(view.name)
             desk.gateway.accept(order, {"run": view.name, "folder": view.folder})
             desk.command(f"{order.action.command} by {order.by}")
             if notes and desk.watch is not None:

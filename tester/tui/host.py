@@ -87,7 +87,7 @@ class HostApp(LookApp):
         self.link: Link | None = None
         self._started = False
         self._stops: set[asyncio.Task[None]] = set()
-        self.said: list[Said] = []
+        self.shown_messages: list[Said] = []
         """Messages that have not expired, oldest first."""
 
     # -- for the screens --------------------------------------------------------------------------------------
@@ -107,17 +107,17 @@ class HostApp(LookApp):
     def say(self, text: str, *, problem: bool = False, lasting: bool = False) -> None:
         """Show a message to the person, as plain text, above the last line of each screen and dialog."""
         now_s = self.scene.now()
-        self.said.append(said_now(text, problem=problem, lasting=lasting, now_s=now_s))
-        self.set_timer(self.said[-1].until_s - now_s + 0.01, self.show_said)
+        self.shown_messages.append(said_now(text, problem=problem, lasting=lasting, now_s=now_s))
+        self.set_timer(self.shown_messages[-1].until_s - now_s + 0.01, self.show_said)
         self.show_said()
 
     def show_said(self) -> None:
         """Show the messages that have not expired."""
         now_s = self.scene.now()
-        self.said = [message for message in self.said if message.until_s > now_s]
+        self.shown_messages = [message for message in self.shown_messages if message.until_s > now_s]
         for screen in self.screen_stack:
             for lines in screen.query(SaidLines):
-                lines.show_said(self.said)
+                lines.show_said(self.shown_messages)
 
     # -- link -------------------------------------------------------------------------------------------------
 

@@ -34,8 +34,8 @@ def run_page(reader: RunReader, results: RunResults) -> dict[str, Any]:
     events = list(reader.events())
     table = conditions_table(results)
     length_s = _length_s(reader, results)
-    told = [Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, info.name) for e in events]
-    steps = recorded_steps(told, length_s)
+    shown = [Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, info.name) for e in events]
+    steps = recorded_steps(shown, length_s)
     return {
         "run": info.name, "recipe": info.recipe_name, "status": results.status.value, "reason": run.reason,
         "operator": info.operator, "started_utc": info.started_utc, "simulated": info.simulated, "risk": info.risk,

@@ -210,7 +210,7 @@ class House:
             while len(on.app.screen_stack) > 1:
                 on.app.pop_screen()
                 await on.pilot.pause()
-            on.app.said.clear()
+            on.app.shown_messages.clear()
             on.app.show_said()
             on.app.query_one(BusPage).action_unfilter()
             await on.pilot.press("f2")

@@ -20,7 +20,7 @@ async def lose(on: Stage, *, ended: bool) -> None:
     if ended:
         on.fake.gateway.take(b"b")
     on.fake.gateway.farewell()
-    await on.fake.gateway.all_told()
+    await on.fake.gateway.guests.sent()
     await on.fake.__aexit__(None, None, None)
     await on.until(lambda: bool(on.app.scene.gone), "the loss is known")
     await on.pilot.pause()

@@ -369,7 +369,7 @@ def test_commissioning_is_offered_only_while_nobody_has_the_rig(house: House) ->
     async def act(on: Stage) -> None:
         await on.pilot.press("f4", "c")
         await on.until(lambda: "commissioning begins while no run" in on.text(), "why not is said")
-        on.app.said.clear()
+        on.app.shown_messages.clear()
         await on.show(a_state("OFFLINE"))
         await on.pilot.press("c")
         await on.until(lambda: "the service has another rig" in on.text(), "the way in a shell is said")

@@ -95,7 +95,7 @@ def test_a_record_that_is_elsewhere_shows_no_value_and_no_complaint(tmp_path: Pa
         await on.show(at_run(tmp_path / "runs" / "gone", 0, "done"), steps(3))
         page = on.app.query_one(RunPage)
         await on.until(lambda: not [w for w in on.app.workers if w.group == "results"], "it was looked for")
-        assert on.app.scene.results is None and not page.has_class("-ended") and not on.app.said
+        assert on.app.scene.results is None and not page.has_class("-ended") and not on.app.shown_messages
 
     play(act, tmp_path)
 
