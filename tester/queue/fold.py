@@ -26,7 +26,7 @@ from tester.queue.items import MAY_GO_ON, End, Hashes, ItemState, QueueItem
 
 MOST_WAITING: Final = 200
 """Greatest number of items that wait or are skipped [A]: months of work; a prediction of them takes milliseconds."""
-AT_END: Final = "no item waits"
+AT_END: Final = "it came to its end"
 NEVER_STARTED: Final = "not started yet"
 
 

@@ -71,7 +71,7 @@ def test_evidence_for_another_item_or_revision_is_none() -> None:
         ((*GOING, QueueStood("the service was started anew")), "standing: the service was started anew"),
         ((*GOING, ItemTaken(1)), "item 1 begins"),
         ((*GOING, ItemTaken(1), ItemBegan(1, "run-1")), "item 1 runs"),
-        ((*GOING, ItemSkipped(1, "a"), ItemSkipped(2, "a")), "standing: no item waits"),
+        ((*GOING, ItemSkipped(1, "a"), ItemSkipped(2, "a")), "standing: it came to its end"),
     ],
 )
 def test_the_queue_waits_with_a_reason(events: tuple[QueueEvent, ...], reason: str) -> None:

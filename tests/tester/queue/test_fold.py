@@ -108,7 +108,7 @@ def test_an_impossible_change_is_refused_with_its_reason(event: QueueEvent, reas
 
 def test_after_the_last_item_the_queue_stands_and_an_added_item_does_not_begin() -> None:
     queue = queue_of(ItemAdded(item(1)), *RUNS[2:], ItemEnded(1, End.DONE, "", "run-1"), ItemAdded(item(2)))
-    assert (queue.going, queue.why) == (False, "no item waits")
+    assert (queue.going, queue.why) == (False, "it came to its end")
 
 
 def test_a_queue_in_which_no_item_waits_is_not_started() -> None:

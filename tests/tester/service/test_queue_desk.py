@@ -77,7 +77,7 @@ def test_two_items_run_one_after_the_other(tmp_path: Path) -> None:
 
     stage = play(tmp_path, script)
     last = stage.queues[-1]
-    assert (states(last), last.going, last.state) == ([(1, "done"), (2, "done")], False, "standing: no item waits")
+    assert (states(last), last.going, last.state) == ([(1, "done"), (2, "done")], False, "standing: it came to its end")
     assert [item_of(stage, number).run for number in (1, 2)] == runs(tmp_path)
     assert all(view.state for view in stage.queues)
 
