@@ -221,7 +221,8 @@ class Quantities:
             there = screen is None or not screen.optional or screen.device in devices
             return channel if there else replace(channel, screen=None)
 
-        return Quantities(tuple(map(fitted, self.channels)), self.roles)
+        channels = tuple(map(fitted, self.channels))
+        return self if channels == self.channels else Quantities(channels, self.roles)
 
     def with_further(self, channels: Sequence[Channel]) -> Quantities:
         """Return the table of a rig with these further channels; raises ValueError for an invalid one."""

@@ -50,7 +50,7 @@ RESULTS = CommandGroup(
     },
 )
 QUEUE = CommandGroup(
-    "Recipes that run one after another: add, list, start.",
+    "Recipes in turn: add, list, move, skip, drop, start, stand, check, key.",
     {
         "add": CommandEntry("queue_group", "add", "Check a recipe and add it to the queue."),
         "list": CommandEntry("queue_group", "list_", "List the items and what the queue waits for."),

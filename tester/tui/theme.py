@@ -101,6 +101,9 @@ class LookApp(App[str]):
             clean(text), severity="error" if problem else "information", timeout=60.0 if lasting else 6.0, markup=False
         )
 
+    def show_said(self) -> None:
+        """Show the messages that have not expired on the present screen. Here Textual does so."""
+
     def size_classes(self, event: Resize, small: str) -> None:
         """Set the classes of the size: ``small`` below SMALLEST, ``-wide`` and ``-huge`` from WIDE and HUGE on."""
         width, height = event.size

@@ -12,7 +12,7 @@ import pytest
 from tester.base.lock import holder_of
 from tester.service.client import Client, NoServiceError
 from tester.service.commands import RunRecipe
-from tester.tui.host import LOG, start_service
+from tester.tui.own_service import LOG, start_service
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.notices.relay import MailRelay
 from tests.tester.notices.scene import ANNA
