@@ -160,6 +160,8 @@ def _noticed(name: str, made: Made, folder: Path) -> Set[Key]:
 
 def _main(name: str, chosen: Path) -> None:
     mutant = MUTANTS[name]
+    if mutant.module in sys.modules:
+        raise LookupError(f"{mutant.module} is imported already: its change would have no effect")
     sys.meta_path.insert(0, Patched(mutant))
     made: Made = pickle.loads(chosen.read_bytes())  # noqa: S301 - the campaign's own
     with TemporaryDirectory() as reports:

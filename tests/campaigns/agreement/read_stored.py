@@ -5,8 +5,6 @@ from __future__ import annotations
 import json
 from typing import Any
 
-from tester.page.stored.asked import answer
-from tester.page.stored.run_cache import RunCache
 from tests.campaigns.agreement.facts import Facts
 from tests.campaigns.agreement.names import ASKED, MADE, MARK, MU, RIG_SECONDS, STATUS, U_COMPOUND, U_THIS, VALID
 from tests.campaigns.agreement.names import MU_MEASURED as MEASURED
@@ -15,6 +13,10 @@ from tests.campaigns.agreement.record import Record
 
 def read_stored(record: Record, output: str) -> Facts:
     """Return the facts of the page's answers: numbers in full, and in the digits that people see."""
+    # Imported now: a mutant changes its module while that is imported, and the page imports many.
+    from tester.page.stored.asked import answer
+    from tester.page.stored.run_cache import RunCache
+
     facts, cache = Facts(output), RunCache(record.folder.parent)
 
     def asked(query: str, **keys: Any) -> dict[str, Any]:
