@@ -56,12 +56,12 @@ def test_the_code_that_an_action_needs_appears_on_any_screen(tmp_path: Path) -> 
     async def story() -> None:
         async with PageStage(tmp_path) as stage:
             app = TesterApp(TuiOptions(address=stage.fake.address))
-            async with app.run_test(size=(120, 40), notifications=True) as pilot:
+            async with app.run_test(size=(120, 40)) as pilot:
                 await pilot.press("f5")
                 page = await stage.paired("control")
                 assert (await page.command({"command": "ack"}))["reason"].startswith("code:")
                 (code,) = (await stage.desk()).asked
-                await until(lambda: any(code.digits in note.message for note in app._notifications))
+                await until(lambda: code.digits in dialog_text(app))
 
     asyncio.run(story())
 
