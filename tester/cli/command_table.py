@@ -50,7 +50,7 @@ RESULTS = CommandGroup(
     },
 )
 QUEUE = CommandGroup(
-    "Recipes in turn: add, list, move, skip, drop, start, stand, check, key.",
+    "Recipes: add, list, move, skip, drop, start, stand, check, key.",
     {
         "add": CommandEntry("queue_group", "add", "Check a recipe and add it to the queue."),
         "list": CommandEntry("queue_group", "list_", "List the items and what the queue waits for."),
