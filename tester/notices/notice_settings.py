@@ -5,9 +5,7 @@ The file holds no password and no token: see ``secrets_file``.
 
 from __future__ import annotations
 
-import os
 import re
-import sys
 from datetime import time
 from hashlib import sha256
 from pathlib import Path
@@ -17,12 +15,11 @@ from urllib.parse import urlsplit
 from pydantic import AfterValidator, Field, ValidationError, model_validator
 
 from tester.base.source import InvalidSource, Problem, load_tree
+from tester.base.user_folders import config_folder
 from tester.base.validation import Section, problems_of
 from tester.base.words import plain_text
 from tester.notices.notice import NoticeCause
 
-FOLDER_VARIABLE: Final = "TESTER_CONFIG_DIR"
-"""Environment variable: the folder of the user's settings."""
 FILE: Final = "notices.yaml"
 SMTP_PORTS: Final = {"tls": 465, "starttls": 587, "none": 25}
 """Ports by security (RFC 8314, RFC 6409, RFC 5321)."""
@@ -34,24 +31,6 @@ _HOST = re.compile(r"[A-Za-z0-9](?:[A-Za-z0-9.-]{0,250}[A-Za-z0-9])?|[0-9a-fA-F:
 _TOPIC = re.compile(r"[-_A-Za-z0-9]{1,64}")
 """ntfy's own rule for topics."""
 _TIME = re.compile(r"([01][0-9]|2[0-3]):[0-5][0-9]")
-
-
-def config_folder() -> Path:
-    """Return the folder of the user's settings, which need not exist.
-
-    ``TESTER_CONFIG_DIR``, else ``friction-tester`` in ``XDG_CONFIG_HOME`` or ``~/.config``, on macOS in
-    ``~/Library/Application Support``, on Windows in ``APPDATA``.
-    """
-    chosen = os.environ.get(FOLDER_VARIABLE)
-    if chosen:
-        return Path(chosen)
-    if sys.platform == "win32":
-        base, below = os.environ.get("APPDATA"), "AppData/Roaming"
-    elif sys.platform == "darwin":
-        base, below = None, "Library/Application Support"
-    else:
-        base, below = os.environ.get("XDG_CONFIG_HOME"), ".config"
-    return (Path(base) if base else Path.home() / below) / "friction-tester"
 
 
 def settings_path() -> Path:

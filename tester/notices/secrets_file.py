@@ -14,7 +14,8 @@ from typing import Final
 
 from tester.base.source import InvalidSource, Problem, load_tree
 from tester.base.trouble import in_words
-from tester.notices.notice_settings import config_folder, read_settings, settings_path
+from tester.base.user_folders import config_folder
+from tester.notices.notice_settings import read_settings, settings_path
 
 FILE: Final = "notices-secrets.yaml"
 VARIABLES: Final = {

@@ -22,8 +22,8 @@ from sim.physics import laws
 from sim.physics.lookup import TableSpan, TabulatedLaw
 from sim.physics.tabulated import ALLOWED, POINTS, build, build_at
 from sim.physics.track import table_span
+from tester.base.user_folders import CACHE
 from tester.inputs.materials.library import Library
-from tester.inputs.materials.setting import VARIABLE
 from tests.tester.kinds.specimen_on_track.bench import GROSCH, TrackBench
 
 PAIRS = (("persson", "SBR", "S0"), ("persson", "NBR", "silicon carbide"), ("greta", "tread", "road"))
@@ -97,7 +97,7 @@ def of_rig(turns: int) -> Iterator[LawFigure]:
     quickest of ten scatters half as much as a median of ratios.
     """
     with TemporaryDirectory() as folder:
-        os.environ[VARIABLE] = folder
+        os.environ[CACHE] = folder
         rigs = [(TABLED, "SBR", ("sim.law=persson", "sim.surface=S0"))]
         rigs += [(name, compound, (f"sim.law={name}",)) for name, compound in OTHERS.items()]
         quickest = {name: inf for name, _, _ in rigs}

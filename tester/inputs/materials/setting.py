@@ -2,14 +2,10 @@
 
 from __future__ import annotations
 
-import os
-import sys
 from pathlib import Path
 
 from sim.physics.laws import LawSetting
-
-VARIABLE = "TESTER_CACHE_DIR"
-"""Environment variable: the folder of files that can be made again at any time."""
+from tester.base.user_folders import cache_folder
 
 
 def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
@@ -18,21 +14,3 @@ def law_setting(surface: str, recipe: Path | None = None) -> LawSetting:
 
     library = Library.beside(recipe)
     return LawSetting(library, surface, tables=cache_folder() / "laws", stated=library.stated_law)
-
-
-def cache_folder() -> Path:
-    """Return the folder of cached files, which need not exist.
-
-    ``TESTER_CACHE_DIR``, else ``friction-tester`` in the user's caches: ``XDG_CACHE_HOME`` or ``~/.cache``, on macOS
-    ``~/Library/Caches``, on Windows ``LOCALAPPDATA``.
-    """
-    override = os.environ.get(VARIABLE)
-    if override:
-        return Path(override)
-    if sys.platform == "win32":
-        base, below = os.environ.get("LOCALAPPDATA"), "AppData/Local"
-    elif sys.platform == "darwin":
-        base, below = None, "Library/Caches"
-    else:
-        base, below = os.environ.get("XDG_CACHE_HOME"), ".cache"
-    return (Path(base) if base else Path.home() / below) / "friction-tester"

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 from tester.base.source import InvalidSource
+from tester.base.user_folders import config_folder
 from tester.notices.notice import NoticeCause
-from tester.notices.notice_settings import config_folder, lane_of, read_settings
+from tester.notices.notice_settings import lane_of, read_settings
 from tester.notices.secrets_file import NoticeSecrets, read_secrets, without_secrets
 
 WHOLE = """

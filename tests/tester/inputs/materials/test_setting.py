@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from tester.inputs.materials.setting import VARIABLE, cache_folder, law_setting
+from tester.base.user_folders import CACHE, cache_folder
+from tester.inputs.materials.setting import law_setting
 
 
 @pytest.mark.parametrize(
@@ -18,18 +19,18 @@ from tester.inputs.materials.setting import VARIABLE, cache_folder, law_setting
         ("darwin", {"XDG_CACHE_HOME": "/caches"}, "/home/somebody/Library/Caches/friction-tester"),
         ("win32", {"LOCALAPPDATA": "/local"}, "/local/friction-tester"),
         ("win32", {}, "/home/somebody/AppData/Local/friction-tester"),
-        ("linux", {VARIABLE: "/own", "XDG_CACHE_HOME": "/caches"}, "/own"),
+        ("linux", {CACHE: "/own", "XDG_CACHE_HOME": "/caches"}, "/own"),
     ],
 )
 def test_tables_are_kept_among_the_users_caches(
     monkeypatch: pytest.MonkeyPatch, platform: str, environment: dict[str, str], expected: str
 ) -> None:
-    for name in (VARIABLE, "XDG_CACHE_HOME", "LOCALAPPDATA"):
+    for name in (CACHE, "XDG_CACHE_HOME", "LOCALAPPDATA"):
         monkeypatch.delenv(name, raising=False)
     for name, value in environment.items():
         monkeypatch.setenv(name, value)
     monkeypatch.setattr(sys, "platform", platform)
     monkeypatch.setattr(Path, "home", lambda: Path("/home/somebody"))
-    own = Path("/own") if VARIABLE in environment else Path(expected)
+    own = Path("/own") if CACHE in environment else Path(expected)
     assert cache_folder() == own
     assert law_setting("S0").tables == own / "laws"

@@ -11,8 +11,8 @@ from sim.physics import laws
 from sim.physics.laws import LawSetting, make
 from sim.physics.materials import Surface
 from tester.base.source import InvalidSource
+from tester.base.user_folders import CACHE
 from tester.inputs.materials.library import Library
-from tester.inputs.materials.setting import VARIABLE
 from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.axes import held_by
@@ -29,7 +29,7 @@ ON = GROSCH.replace("specimens:", "abrasive: {name: S0}\nspecimens:")
 def tables(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
     """Tables of this module lie in a folder of its own."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setenv(VARIABLE, str(tmp_path_factory.mktemp("cache")))
+        patch.setenv(CACHE, str(tmp_path_factory.mktemp("cache")))
         yield
 
 
@@ -99,7 +99,7 @@ def test_a_rig_that_states_its_surface_is_not_covered_with_another(tmp_path: Pat
 
 
 def test_the_table_is_kept_for_the_next_run(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setenv(VARIABLE, str(tmp_path))
+    monkeypatch.setenv(CACHE, str(tmp_path))
     config = TrackConfig.of(load_rig("grosch", ("sim.law=persson", "sim.surface=S0")))
     for _ in range(2):
         bench = TrackBench("grosch", GROSCH, ("sim.law=persson", "sim.surface=S0"))
