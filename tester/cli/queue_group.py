@@ -47,7 +47,7 @@ speed_option = click.option(
 @operator_option
 @click.option("--note", "notes", default="", metavar="TEXT", help="Note for the run's record.")
 @click.option("--after", default="done,short", show_default=True, metavar="ENDS",
-              help="Ends after which the queue goes on: done, short, failed.")  # fmt: skip
+              help="Ends after which the queue continues: done, short, failed.")  # fmt: skip
 @connect_option
 @json_option
 def add(
@@ -87,7 +87,7 @@ ADD_S = 150.0
 def _end(word: str) -> Literal["done", "short", "failed"]:
     if word == "done" or word == "short" or word == "failed":
         return word
-    raise click.UsageError(f'--after: "{word}" is no end after which a queue goes on (expected done, short, failed)')
+    raise click.UsageError(f'--after: "{word}" is no end after which a queue continues (expected done, short, failed)')
 
 
 @command("list")
@@ -156,7 +156,7 @@ def start(agree: tuple[int, ...], take: bool, address: str) -> int:
 @click.option("--reason", default="", metavar="TEXT", help="Why; it is shown with the queue.")
 @connect_option
 def stand(reason: str, address: str) -> int:
-    """Let the queue begin no further item; the item that runs goes on."""
+    """Begin no further item; the running item continues."""
     from tester.service.commands import QueueStand
 
     return _edit(address, lambda _revision: QueueStand(reason))
@@ -170,7 +170,7 @@ def stand(reason: str, address: str) -> int:
 @connect_option
 @json_option
 def check(begins: str, ends: str, out: Path, rig_name: str, address: str, as_json: bool) -> int:
-    """Until when the queue runs alone, when somebody is needed, and which order would run longer.
+    """Until when the queue runs alone, when it needs a person, and which order would run longer.
 
     Times are expected ones with the interval of 95 % of queues. Nothing is moved by it. Exit code 1 where the queue
     needs a person, or is at its end, before the window ends.

@@ -30,7 +30,7 @@ class ItemMoved:
 
 @dataclass(frozen=True, slots=True)
 class ItemSkipped:
-    """A person passes over a waiting item, or stops the item under way and lets the queue go on."""
+    """A person passes over a waiting item, or stops the item under way and lets the queue continue."""
 
     id: int
     by: str
@@ -76,7 +76,7 @@ class ItemBegan:
 @dataclass(frozen=True, slots=True)
 class ItemReturned:
     """The item's run did not begin: the item waits again at its place, and the queue stands; a skipped one stays
-    skipped, and the queue goes on.
+    skipped, and the queue continues.
     """
 
     id: int

@@ -211,7 +211,7 @@ def _ended(queue: Queue, what: ItemEnded, utc: str) -> Queue:
 
 
 def goes_on(entry: QueueEntry, *, stands: bool) -> bool:
-    """Return whether the queue goes on after an ended item. ``stands``: nothing may loosen that it stands."""
+    """Return whether the queue continues after an ended item. ``stands``: nothing may loosen that it stands."""
     if stands or entry.end is None or entry.end is End.TRIPPED:
         return False
     return bool(entry.skip) if entry.end is End.STOPPED else entry.end in entry.item.after

@@ -84,7 +84,7 @@ class Orders:
             self.job = None
 
     def skip(self, by: str) -> None:
-        """Stop the item of the queue that is under way in a controlled way; the queue itself goes on."""
+        """Stop the running item of the queue in a controlled way; the queue itself continues."""
         watch = self.desk.watch
         if watch is not None:
             watch.run.request_stop(f"skipped by {by}")

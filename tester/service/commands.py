@@ -215,7 +215,7 @@ Clock = Annotated[str, Field(pattern=r"^([01]?\d|2[0-3]):[0-5]\d$")]
 class QueueAdd(StrictMessage):
     """Add an item to the end of the queue, if it is valid on the service's rig. Result: ``{"id", "revision"}``.
 
-    Options as of ``run``; the recipe is frozen now. ``after``: ends after which the queue goes on.
+    Options as of ``run``; the recipe is frozen now. ``after``: ends after which the queue continues.
     """
 
     recipe: PathText
@@ -272,7 +272,7 @@ class QueueStart(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class QueueStand(StrictMessage):
-    """Let the queue begin no further item; the item under way goes on."""
+    """Let the queue begin no further item; the running item continues."""
 
     reason: Note = ""
     command: Literal["queue_stand"] = "queue_stand"

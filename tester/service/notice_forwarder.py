@@ -58,7 +58,7 @@ class NoticeForwarder:
         self._lines.put(line)
 
     def close(self) -> None:
-        """Forward what waits, and close the sender's input; the sender goes on for a while."""
+        """Forward what waits, and close the sender's input; the sender works for a while."""
         self._lines.put(None)
         self._thread.join(CLOSE_S)
 
