@@ -66,7 +66,7 @@ def test_adding_needs_a_service(stored: list[str]) -> None:
 
 def test_another_end_is_a_usage_error(stored: list[str]) -> None:
     done = CliRunner().invoke(add, ["quickstart", "--after", "tripped", *stored[2:]])
-    assert done.exit_code == 2 and '"tripped" is no end after which a queue goes on' in done.output
+    assert done.exit_code == 2 and '"tripped" is no end after which a queue continues' in done.output
 
 
 def test_a_key_is_shown_once_listed_without_itself_and_revoked(tmp_path: Path) -> None:
