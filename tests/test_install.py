@@ -9,8 +9,9 @@ from pathlib import Path
 import pytest
 
 from tests.campaigns.acceptance.figure import Figure, equal
+from tests.campaigns.install import topics
 from tests.campaigns.install.__main__ import main
-from tests.campaigns.install.place import carry_out, fresh_copy, readme_command
+from tests.campaigns.install.place import PASS_S, carry_out, fresh_copy, readme_command
 from tests.campaigns.install.topics import TOPICS, differing, interpreter
 
 posix = pytest.mark.skipif(os.name != "posix", reason="the README's POSIX commands are measured, by bash")
@@ -49,6 +50,48 @@ def test_no_cache_and_no_wish_to_compile_is_handed_on(tmp_path: Path, monkeypatc
     monkeypatch.setenv("FRICTION_TESTER_COMPILE", "1")
     told = carry_out("echo $PIP_NO_CACHE_DIR-$FRICTION_TESTER_COMPILE-", tmp_path)
     assert told.text == "1--\n"
+
+
+@posix
+def test_an_output_is_heard_piece_by_piece_with_its_time(tmp_path: Path) -> None:
+    pieces: list[tuple[str, float]] = []
+    told = carry_out("echo one; echo two", tmp_path, heard=lambda piece, at_s: pieces.append((piece, at_s)))
+    assert "".join(piece for piece, _ in pieces) == told.text == "one\ntwo\n"
+    assert all(0.0 < at_s <= told.wall_s for _, at_s in pieces)
+
+
+_A_RUN_OF_TESTS = "echo Successfully installed; printf '..F\\n'; exit {}"
+
+
+@posix
+@pytest.mark.parametrize(("code", "missed"), [(0, 0), (1, 1)])
+def test_whole_tests_miss_where_one_fails_and_their_output_is_shown(
+    code: int, missed: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.setattr(topics, "fresh_copy", lambda to: tmp_path)
+    monkeypatch.setattr(topics, "readme_command", lambda ends: _A_RUN_OF_TESTS.format(code))
+    monkeypatch.setattr(topics, "pass_s", lambda interpreter: PASS_S)
+    assert main(["tests", "--keep", str(tmp_path / "kept")]) == missed
+    printed = capsys.readouterr().out
+    assert "Successfully installed\n..F\n" in printed and "ok   tests begin after: 0 s" in printed
+
+
+@posix
+def test_whole_tests_without_a_result_never_began(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(topics, "fresh_copy", lambda to: tmp_path)
+    monkeypatch.setattr(topics, "readme_command", lambda ends: "echo Successfully installed")
+    monkeypatch.setattr(topics, "pass_s", lambda interpreter: PASS_S)
+    (*_, begins) = topics.whole_test_command(tmp_path)
+    assert not begins.ok
+
+
+def test_a_copy_that_is_there_already_is_not_measured_again(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (tmp_path / "tests").mkdir()
+    with pytest.raises(SystemExit):
+        main(["tests", "--keep", str(tmp_path)])
+    assert "it has tests already" in capsys.readouterr().err
 
 
 def test_files_that_differ_are_named() -> None:

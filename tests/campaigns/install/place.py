@@ -61,11 +61,18 @@ def readme_command(ends: str) -> str:
 
 
 def carry_out(
-    command: str, folder: Path, *, until: Callable[[str], bool] | None = None, cores: set[int] | None = None, **env: str
+    command: str,
+    folder: Path,
+    *,
+    until: Callable[[str], bool] | None = None,
+    heard: Callable[[str, float], None] | None = None,
+    cores: set[int] | None = None,
+    **env: str,
 ) -> Told:
     """Run a shell command without a package cache; end it where ``until`` holds of what it has printed so far.
 
-    ``cores``: those it may run on.
+    ``heard``: called with each new piece of its output, and the time since its start (s). ``cores``: those it may run
+    on.
     """
     environment = {key: value for key, value in os.environ.items() if key not in _NOT_HANDED_ON}
     environment |= {"PIP_NO_CACHE_DIR": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1", **env}
@@ -81,7 +88,10 @@ def carry_out(
         now = monotonic()
         first_s = first_s or now - begun
         silence_s, last = max(silence_s, now - last), now
-        text += chunk.decode(errors="replace")
+        piece = chunk.decode(errors="replace")
+        text += piece
+        if heard is not None:
+            heard(piece, now - begun)
         if until is not None and until(text):
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()

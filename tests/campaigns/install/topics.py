@@ -8,6 +8,7 @@ import re
 import shutil
 import zipfile
 from collections.abc import Callable, Iterator
+from math import inf
 from pathlib import Path
 
 from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
@@ -52,6 +53,8 @@ def main_command(work: Path) -> Iterator[Figure]:
     folder = told.text.rstrip().splitlines()[-1]
     table = copy / folder / "appendix.csv"
     yield holds("last line is the run's folder", table.is_file(), folder, "holds appendix.csv")
+    lines = table.read_text(encoding="utf-8").splitlines() if table.is_file() else []
+    yield equal("rows of that table", len(lines) - 1, 2)
     rows = {match[1] for match in _ROW.finditer(told.text)}
     yield equal("loads in the table that is printed, with uncertainty (N)", sorted(rows), ["100", "200"])
     yield holds("a command to try next", "\nnext: " in told.text, "named" if "\nnext: " in told.text else "no", "named")
@@ -59,21 +62,45 @@ def main_command(work: Path) -> Iterator[Figure]:
     yield equal("left behind by the build", left, [])
 
 
+def _begun(text: str) -> bool:
+    """Return whether an output has a test's result."""
+    return _DOTS.search(text, text.find("Successfully installed") + 1) is not None and "Successfully" in text
+
+
 def test_command(work: Path) -> Iterator[Figure]:
     """The README's test command, from the first keystroke to the first test's result."""
     copy = fresh_copy(work / "tests")
-
-    def begun(text: str) -> bool:
-        return _DOTS.search(text, text.find("Successfully installed") + 1) is not None and "Successfully" in text
-
-    told = carry_out(readme_command("/pytest"), copy, until=begun)
+    told = carry_out(readme_command("/pytest"), copy, until=_begun)
     if told.code is not None:
         yield holds("tests begin", False, without_warnings(told.text), "a test's result")
         return
+    yield _begins(copy, told.wall_s)
+
+
+def whole_test_command(work: Path) -> Iterator[Figure]:
+    """The README's test command to its end, its output shown, and the time to the first test's result."""
+    copy = fresh_copy(work / "tests")
+    so_far, first_s = "", inf
+
+    def heard(piece: str, at_s: float) -> None:
+        nonlocal so_far, first_s
+        print(piece, end="", flush=True)
+        if first_s == inf:
+            so_far += piece
+            first_s = at_s if _begun(so_far) else inf
+
+    told = carry_out(readme_command("/pytest"), copy, heard=heard)
+    yield equal("exit code", told.code, 0)
+    yield told_only("wall and CPU time", f"{told.wall_s:.0f} s, {told.cpu_s:.0f} s; load {os.getloadavg()[0]:.1f}")
+    yield _begins(copy, first_s)
+
+
+def _begins(copy: Path, wall_s: float) -> Figure:
+    """Return the figure of the time to the first test's result."""
     unit = pass_s(copy / ".venv" / "bin" / "python")
     limit = TESTS_BEGIN_WITHIN_S * max(1.0, unit / PASS_S)
     note = f" (wall, downloads included; `python3 -c pass` {1e3 * unit:.1f} ms, load {os.getloadavg()[0]:.1f})"
-    yield at_most("tests begin after", told.wall_s, round(limit, 1), "s", 0, note=note)
+    return at_most("tests begin after", wall_s, round(limit, 1), "s", 0, note=note)
 
 
 def ways(work: Path) -> Iterator[Figure]:
