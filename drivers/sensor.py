@@ -105,6 +105,9 @@ class Sensor(Device):
         """Update the readings from the registers of a block; they are as old as the oldest block."""
         read = self._reads[block]
         found: tuple[Any, ...] = read.unpack(data)  # whole numbers, and floats of f32
+        if read.cell and self._in_one:
+            self._take_cell(read, found, t)
+            return
         if read.status_place >= 0:
             self.status = int(found[read.status_place])
         status = self.status
@@ -137,6 +140,29 @@ class Sensor(Device):
         self.valid = valid and not status & self._invalid_bits
         self.stamp_s = stamp_s
 
+    def _take_cell(self, read: _SensorRead, found: tuple[Any, ...], t: float) -> None:
+        """Do the same for the four channels and the status of a load cell, which is read in every scan."""
+        x, y, z, m, status = found
+        sx, sy, sz, sm = read.scales
+        lx, ly, lz, lm = read.lows
+        hx, hy, hz, hm = read.highs
+        tx, ty, tz, tm = self.tare
+        counts: list[float] = [x, y, z, m]
+        if counts != self.counts:
+            self.counts = counts
+            self.changed_s = t
+        fx: float = x * sx
+        fy: float = y * sy
+        fz: float = z * sz
+        mz: float = m * sm
+        self.raw = [fx, fy, fz, mz]
+        self.values = [fx - tx, fy - ty, fz - tz, mz - tm]
+        self.status = status
+        self.valid = (
+            lx < fx < hx and ly < fy < hy and lz < fz < hz and lm < mz < hm and not status & self._invalid_bits
+        )
+        self.stamp_s = t
+
     def suspend(self) -> None:
         """Mark the last reading as invalid."""
         self.valid = False
@@ -161,6 +187,14 @@ class _SensorRead:
         ) + tuple(
             _row(-1, place, signal, None) for place, signal in enumerate(block.signals) if signal.guards in channels
         )
+        rows = self.rows
+        self.cell = names[4:] == ["status"] and len(rows) == 4 and all(
+            row[:3] == (place, place, 0) and row[4] == 0.0 for place, row in enumerate(rows)
+        )
+        """Whether it holds four channels and the status, each channel a count times its scale."""
+        self.scales: tuple[float, ...] = tuple(row[3] for row in rows)
+        self.lows: tuple[float, ...] = tuple(row[5] for row in rows)
+        self.highs: tuple[float, ...] = tuple(row[6] for row in rows)
         self.plausible = False
         self.stamp_s: float = -inf
 

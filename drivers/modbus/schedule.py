@@ -38,6 +38,8 @@ class Schedule:
         self._requests: list[Request] = []  # enabled requests, in the order of enabling
         self._soonest_s = self.latest_s = self.wants_s = -inf
         self._with_scans = False
+        self._steady: Request | None = None
+        """The only read that goes out with every scan, while nothing has changed since all requests were looked at."""
         self.slowest_s = 0.0
         """The longest usual exchange among the reads that go out with every scan, s."""
 
@@ -79,6 +81,7 @@ class Schedule:
     def look_again(self) -> None:
         """Forget the time of the next request after a change."""
         self._soonest_s = self.wants_s = -inf
+        self._steady = None
 
     def choose(self, now: float, scan: bool, reads_only: bool = False) -> Request | None:
         """Return the request to send at ``now``; reads of period 0 go out with a ``scan`` only.
@@ -86,12 +89,18 @@ class Schedule:
         ``reads_only``: writes wait, whatever is due.
         The same pass finds when the others fall due.
         """
+        limit = now + _EARLY_S
+        steady = self._steady
+        # Nearly every scan: the others are not due, and all that was found of them stays.
+        if steady is not None and scan and steady.due_s <= limit < self._soonest_s:
+            return steady
         if self._soonest_s == -inf:
             self.slowest_s = max((one.expected_s for one in self._requests if one.period_s == 0.0), default=0.0)
-            self._with_scans = any(each.period_s == 0.0 and not each.attempts for each in self._requests)
+            with_scans = [each for each in self._requests if each.period_s == 0.0 and not each.attempts]
+            self._with_scans = bool(with_scans)
+            self._steady = with_scans[0] if len(with_scans) == 1 and not with_scans[0].writes else None
         chosen: Request | None = None
         rank = soonest = latest = inf
-        limit = now + _EARLY_S
         for request in self._requests:
             due = request.due_s
             if due <= limit:
