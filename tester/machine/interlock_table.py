@@ -9,7 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 from math import inf
-from typing import Any, TypeAlias
+from types import FunctionType
+from typing import Any, Final, TypeAlias
 
 from tester.inputs.rig.parameter import SECTION, Parameter, Values, key_line
 from tester.machine.inputs import ScanInputs
@@ -25,35 +26,31 @@ def parameters_of(rows: Iterable[Interlock[Any]]) -> tuple[Parameter, ...]:
     return tuple(dict.fromkeys(parameter for row in rows for parameter in row.declared()))
 
 
-class Group:
-    """Rows of a rig that are evaluated together, with their bits.
-
-    A number costs one call a scan, and its limit at most one more. Nearly always no condition holds, so a row's
-    condition comes first, and whether the row applies only where it holds.
+class Loops:
+    """The comparisons of rows in loops, the quickest way where they are compiled: a number costs one call a scan, and
+    its limit at most one more.
     """
 
-    __slots__ = ("floors", "least", "members", "most", "numbers", "spans", "states")
-
-    def __init__(self, members: Iterable[tuple[int, Interlock[Any]]], values: Values) -> None:
-        """Take (bit, row) pairs, and the rig's values of the parameters."""
-        self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
+    def __init__(self, rows: Sequence[Interlock[Any]], values: Values) -> None:
+        """Take rows, and the rig's values of the parameters."""
+        self._rows = rows
         # No scan looks a fixed limit up: a rig's values never change.
-        self.numbers = self._fixed(Form.AT_MOST, values)
+        self._numbers = self._fixed(Form.AT_MOST, values)
         """For each row: the number, the value that it may not exceed, and whether the row applies."""
-        self.floors = self._fixed(Form.AT_LEAST, values)
+        self._floors = self._fixed(Form.AT_LEAST, values)
         """The same for the value below which the number may not fall."""
-        self.most = self._moving(Form.AT_MOST)
+        self._most = self._moving(Form.AT_MOST)
         """The same for limits that are functions of the inputs."""
-        self.least = self._moving(Form.AT_LEAST)
-        self.spans: tuple[tuple[Callable[[Any], tuple[float, float, float]], Applies], ...] = tuple(
+        self._least = self._moving(Form.AT_LEAST)
+        self._spans: tuple[tuple[Callable[[Any], tuple[float, float, float]], Applies], ...] = tuple(
             (watch.parts[0], applies) for watch, applies in self._of(Form.WITHIN)
         )
-        self.states: tuple[tuple[Asked, Applies], ...] = tuple(
+        self._states: tuple[tuple[Asked, Applies], ...] = tuple(
             (watch.holds, applies) for watch, applies in self._of(Form.STATE)
         )
 
     def _of(self, form: Form) -> list[tuple[Watch[Any], Applies]]:
-        return [(row.watch, row.applies) for _, row in self.members if row.watch.form is form]
+        return [(row.watch, row.applies) for row in self._rows if row.watch.form is form]
 
     def _fixed(self, form: Form, values: Values) -> tuple[tuple[Read, float, Applies], ...]:
         return tuple(
@@ -67,30 +64,88 @@ class Group:
             (watch.parts[0], watch.parts[1], applies) for watch, applies in self._of(form) if watch.limit is None
         )
 
+    def any_holds(self, v: Any) -> bool:
+        """Return whether any of the rows holds."""
+        for number, limit_value, applies in self._numbers:
+            if not (number(v) <= limit_value) and (applies is None or applies(v)):
+                return True
+        for holds, applies in self._states:
+            if holds(v) and (applies is None or applies(v)):
+                return True
+        for number, limit, applies in self._most:
+            if not (number(v) <= limit(v)) and (applies is None or applies(v)):
+                return True
+        for span, applies in self._spans:
+            low, value, high = span(v)
+            if not (low <= value <= high) and (applies is None or applies(v)):
+                return True
+        for number, limit_value, applies in self._floors:
+            if not (number(v) >= limit_value) and (applies is None or applies(v)):
+                return True
+        for number, limit, applies in self._least:
+            if not (number(v) >= limit(v)) and (applies is None or applies(v)):
+                return True
+        return False
+
+
+def written(rows: Iterable[Interlock[Any]], values: Values) -> Asked:
+    """Return the same comparisons as one Python function without loops, from text: the quickest way where nothing is
+    compiled. A number that several rows compare is computed once.
+    """
+    names: dict[str, Any] = {}
+    places: dict[Any, str] = {}
+    lines = ["def any_holds(v):"]
+    kept: set[str] = set()
+
+    def name(thing: Any) -> str:
+        place = places.setdefault(thing, f"x{len(places)}")
+        names[place] = thing
+        return place
+
+    for row in rows:
+        watch, form, limit = row.watch, row.watch.form, row.watch.fixed(values)
+        applies = f" and {name(row.applies)}(v)" if row.applies is not None else ""
+        if form is Form.STATE:
+            comparison = f"{name(watch.holds)}(v)"
+        elif form is Form.WITHIN:
+            lines.append(f" low, value, high = {name(watch.parts[0])}(v)")
+            comparison = "not low <= value <= high"
+        else:
+            place = name(watch.parts[0])
+            number = f"n{place}" if place in kept else f"(n{place} := {place}(v))"
+            kept.add(place)
+            bound = f"{name(watch.parts[1])}(v)" if limit is None else name(limit)
+            comparison = f"not {number} {'<=' if form is Form.AT_MOST else '>='} {bound}"
+        lines.append(f" if {comparison}{applies}: return True")
+    exec("\n".join((*lines, " return False")), names)
+    any_holds: Asked = names["any_holds"]
+    return any_holds
+
+
+COMPILED: Final = not isinstance(parameters_of, FunctionType)
+
+
+class Group:
+    """Rows of a rig that are evaluated together, with their bits.
+
+    Nearly always no condition holds, so a row's condition comes first, and whether the row applies only where it holds.
+    """
+
+    __slots__ = ("any_holds", "members")
+
+    def __init__(self, members: Iterable[tuple[int, Interlock[Any]]], values: Values) -> None:
+        """Take (bit, row) pairs, and the rig's values of the parameters."""
+        self.members: tuple[tuple[int, Interlock[Any]], ...] = tuple(members)
+        rows = [row for _, row in self.members]
+        self.any_holds: Asked = Loops(rows, values).any_holds if COMPILED else written(rows, values)
+        """Whether any of the rows holds."""
+
     def held(self, v: ScanInputs) -> int:
         """Return the bits of the rows that hold. Nearly always none holds; the search for the row begins only when one
         does.
         """
-        for number, limit_value, applies in self.numbers:
-            if not (number(v) <= limit_value) and (applies is None or applies(v)):
-                return self._which(v)
-        for holds, applies in self.states:
-            if holds(v) and (applies is None or applies(v)):
-                return self._which(v)
-        for number, limit, applies in self.most:
-            if not (number(v) <= limit(v)) and (applies is None or applies(v)):
-                return self._which(v)
-        for span, applies in self.spans:
-            low, value, high = span(v)
-            if not (low <= value <= high) and (applies is None or applies(v)):
-                return self._which(v)
-        for number, limit_value, applies in self.floors:
-            if not (number(v) >= limit_value) and (applies is None or applies(v)):
-                return self._which(v)
-        for number, limit, applies in self.least:
-            if not (number(v) >= limit(v)) and (applies is None or applies(v)):
-                return self._which(v)
-        return 0
+        any_holds = self.any_holds
+        return self._which(v) if any_holds(v) else 0
 
     def _which(self, v: ScanInputs) -> int:
         held = 0
@@ -103,7 +158,7 @@ class Group:
 class RigTable:
     """The rows with the values of a rig: it evaluates a scan, and never changes."""
 
-    __slots__ = ("after_change", "always", "while_ending", "while_loaded")
+    __slots__ = ("after_change", "always", "in_contact", "while_ending", "while_loaded")
 
     def __init__(self, table: InterlockTable, values: Values) -> None:
         """Take the rows of ``table``, and the rig's value of each of its parameters."""
@@ -113,6 +168,8 @@ class RigTable:
 
         self.always, self.while_loaded, self.while_ending = group(ALWAYS), group(LOADED), group(ENDING)
         self.after_change = group(SELDOM)
+        self.in_contact = Group((*self.always.members, *self.while_loaded.members), values)
+        """Those of every scan, and those of a loaded one, in one pass."""
 
     def __deepcopy__(self, memo: dict[int, object]) -> RigTable:
         """Return itself: copies of a running machine share its table."""
@@ -123,9 +180,7 @@ class RigTable:
         seldom = v.seldom()
         if seldom is None or seldom != v.seen:
             v.seen, v.seen_held = seldom, self.after_change.held(v)
-        found = v.seen_held | self.always.held(v)
-        if v.loaded and not v.unpowered:
-            found |= self.while_loaded.held(v)
+        found = v.seen_held | (self.in_contact if v.loaded and not v.unpowered else self.always).held(v)
         if v.lifting_s >= 0.0 or v.resting or v.unpowered:
             found |= self.while_ending.held(v)
         return found

@@ -8,7 +8,7 @@ from dataclasses import fields, is_dataclass
 from math import inf, nan
 from typing import Any
 
-from tester.machine.interlock_table import InterlockTable, RigTable
+from tester.machine.interlock_table import InterlockTable, Loops, RigTable, written
 from tester.machine.row import SELDOM
 
 OWN = ("seen", "seen_held")
@@ -39,11 +39,14 @@ def other(value: object, numbers: random.Random) -> object:
 def expect_every_scan(
     table: InterlockTable, view: Any, parts: Sequence[Any], also: Callable[[random.Random], None] | None = None
 ) -> None:
-    """Change whatever the inputs hold, a value a scan: each row holds in every scan in which its condition does.
+    """Change whatever the inputs hold, a value a scan: each row holds in every scan in which its condition does,
+    and both ways of comparing rows agree.
 
     ``parts``: the objects of the inputs; ``also``: changes what is no field of theirs.
     """
     rows = [row for row in table.rows if row.when is SELDOM]
+    each = [([row], Loops([row], view.parameters).any_holds, written([row], view.parameters)) for row in table.rows]
+    each.append((list(table.rows), Loops(table.rows, view.parameters).any_holds, written(table.rows, view.parameters)))
     numbers, evaluated = random.Random(1), RigTable(table, view.parameters)
     usual = places(parts)
     found: set[str] = set()
@@ -59,4 +62,6 @@ def expect_every_scan(
             expected = {row.name for row in rows if row.holds(view)}
             assert expected == {row.name for row in rows if row.name in held}
             found |= expected
+        for some, looped, straight in each:
+            assert looped(view) == straight(view) == any(row.holds(view) for row in some)
     assert found == {row.name for row in rows}

@@ -27,7 +27,7 @@ def test_a_row_that_is_seldom_evaluated_holds_in_every_scan_in_which_its_conditi
 def test_they_are_evaluated_again_only_after_a_change(bench: Bench) -> None:
     view, table = bench.control.view, RigTable(TABLE, bench.control.view.parameters)
     asked: list[object] = []
-    table.after_change.states = ((lambda v: asked.append(v) is not None, None),)
+    table.after_change.any_holds = lambda v: asked.append(v) is not None
     for hub_c, times in ((50.0, 0), (50.0, 0), (50.1, 1), (50.1, 1), (nan, 2)):
         view.readings.hub_c = hub_c
         view.readings.now_s += 0.01
@@ -38,7 +38,7 @@ def test_they_are_evaluated_again_only_after_a_change(bench: Bench) -> None:
 def test_no_wanted_temperature_is_no_change(bench: Bench) -> None:
     view, table = bench.control.view, RigTable(TABLE, bench.control.view.parameters)
     asked: list[object] = []
-    table.after_change.states = ((lambda v: asked.append(v) is not None, None),)
+    table.after_change.any_holds = lambda v: asked.append(v) is not None
     for text, times in (("41", 1), ("nan", 2), ("nan", 2), ("nan", 2), ("41", 3)):
         view.demand.surface_c = float(text)  # another object each time, as steps make it
         table.held(view)
@@ -48,7 +48,7 @@ def test_no_wanted_temperature_is_no_change(bench: Bench) -> None:
 def test_inputs_that_do_not_say_what_they_hold_have_them_evaluated_in_every_scan(bench: Bench) -> None:
     view, table = bench.control.view, RigTable(TABLE, bench.control.view.parameters)
     asked: list[object] = []
-    table.after_change.states = ((lambda v: asked.append(v) is not None, None),)
+    table.after_change.any_holds = lambda v: asked.append(v) is not None
     view.__class__ = type("Unnamed", (type(view),), {"seldom": ScanInputs.seldom, "__slots__": ()})
     table.held(view)
     table.held(view)
