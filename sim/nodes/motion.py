@@ -105,19 +105,16 @@ class VelocityAxis:
         target, demand, lag = self.target, self.demand, self.lag_s
         yielded = self.yielded
         value, position = self.value + yielded, self.position - yielded * dt
-        while dt > 0.0:
-            if demand == target:
-                slope, span, end = 0.0, dt, target
+        while dt > 0.0 and demand != target:
+            if demand * target < 0.0:
+                end, rate = 0.0, self.deceleration
             else:
-                if demand * target < 0.0:
-                    end, rate = 0.0, self.deceleration
-                else:
-                    end, rate = target, self.deceleration if abs(target) < abs(demand) else self.acceleration
-                slope = rate if end > demand else -rate
-                span = (end - demand) / slope
-                if span > dt:
-                    span = dt
-                    end = demand + slope * dt
+                end, rate = target, self.deceleration if abs(target) < abs(demand) else self.acceleration
+            slope = rate if end > demand else -rate
+            span = (end - demand) / slope
+            if span > dt:
+                span = dt
+                end = demand + slope * dt
             if lag > 0.0:
                 behind = slope * lag
                 remainder = value - demand + behind
@@ -129,6 +126,14 @@ class VelocityAxis:
                 position += 0.5 * (demand + end) * span
             demand = end
             dt -= span
+        if dt > 0.0:  # at the target the ramp is level
+            if lag > 0.0:
+                remainder, decay = value - target, exp(-dt / lag)
+                value = target + remainder * decay
+                position += target * dt + remainder * lag * (1.0 - decay)
+            else:
+                value = target
+                position += target * dt
         self.demand = demand
         if self.blocked:
             value = self.yielded = 0.0

@@ -166,11 +166,14 @@ class PdoExchange(SyncFollower):
 
     # out -----------------------------------------------------------------------------------------------------
 
-    def on_sync(self, t: float) -> None:
-        """Apply the frames held for this SYNC and send its TPDOs."""
+    def on_sync(self, t: float, *, plainly: bool = False) -> bool:
+        """Apply the frames held for this SYNC and send its TPDOs, unless the wire sends the only one."""
         for received in self.fresh:
             received.sink(received.held, t)
         self.fresh.clear()
+        if plainly and self._single and not self.urgent:
+            self.plain = True
+            return True
         for cob_id, source in self._each_sync:
             self._wire.transmit(cob_id, source(), t, self.urgent)
         for pdo in self._counted_tpdos:
@@ -178,6 +181,7 @@ class PdoExchange(SyncFollower):
                 self._wire.transmit(pdo.cob_id, pdo.source(), t, self.urgent)
         self.urgent = False
         self.plain = self._single
+        return False
 
     def take(self, pdo: ReceivePdo, data: bytes, t: float) -> None:
         """Write an RPDO's mapped values into the object store and let the device act on them."""

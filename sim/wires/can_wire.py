@@ -242,7 +242,12 @@ class CanWire(CanListeners):
         quick = self.connected and not self.watchers
         arrival, occupied_s = self._busy_s, self.occupied_s
         for follower in self._followers:
-            if quick and follower.plain:
+            plain = quick and follower.plain
+            if not plain:
+                self._busy_s, self.occupied_s = arrival, occupied_s
+                plain = follower.on_sync(t, plainly=quick)
+                arrival, occupied_s = self._busy_s, self.occupied_s
+            if plain:
                 data = follower.sample
                 if follower.stale:
                     take = follower.take_sample  # called as a method it is looked up anew (CPython 3.11)
@@ -251,10 +256,6 @@ class CanWire(CanListeners):
                 arrival += length_s
                 occupied_s += length_s
                 inbox.append((arrival, follower.sample_id, data))
-            else:
-                self._busy_s, self.occupied_s = arrival, occupied_s
-                follower.on_sync(t)
-                arrival, occupied_s = self._busy_s, self.occupied_s
         self._busy_s, self.occupied_s = arrival, occupied_s
 
     def settle(self, now: float) -> None:

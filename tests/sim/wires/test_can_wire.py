@@ -265,8 +265,9 @@ class Follower(SyncFollower):
         self.syncs: list[float] = []
         wire.follow(self, 1)
 
-    def on_sync(self, t: float) -> None:
+    def on_sync(self, t: float, *, plainly: bool = False) -> bool:
         self.syncs.append(t)
+        return False
 
 
 SYNC = (0x080, b"")

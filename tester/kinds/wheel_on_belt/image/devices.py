@@ -69,8 +69,8 @@ class Devices(DeviceList):
 
     # Slots: CPython 3.11 looks the methods of an object with more than 30 attributes up anew in every scan.
     __slots__ = (
-        "_contactor_asked", "_contactor_closed", "_last_angle_s", "_positioned", "axes", "cell", "jacket", "slip_ring",
-        "thermometer",
+        "_contactor_asked", "_contactor_closed", "_cos", "_last_angle_s", "_positioned", "_sideslip_deg", "_sin", "axes",
+        "cell", "jacket", "slip_ring", "thermometer",
     )  # fmt: skip
 
     def __init__(self, rig: RigConfig, ports: Ports) -> None:
@@ -96,6 +96,7 @@ class Devices(DeviceList):
         self._contactor_asked = False
         self._contactor_closed = False  # its last feedback
         self._last_angle_s: float = NEVER
+        self._sideslip_deg, self._cos, self._sin = 0.0, 1.0, 0.0
 
     def fill(self, r: Readings, now: float) -> None:
         """Update the process image; ``WheelLife.show`` has already updated the wheel's diameters."""
@@ -140,9 +141,12 @@ class Devices(DeviceList):
             if not drive.reached():
                 reached = False
         r.positions_at_s, r.yaw_reached = oldest_s, reached
-        angle = positions["sideslip"] * _RADIANS_PER_DEGREE
-        along = wheel_m_s - belt_m_s * cos(angle)
-        across = belt_m_s * sin(angle)
+        sideslip_deg = positions["sideslip"]
+        if sideslip_deg != self._sideslip_deg:
+            angle = sideslip_deg * _RADIANS_PER_DEGREE
+            self._sideslip_deg, self._cos, self._sin = sideslip_deg, cos(angle), sin(angle)
+        along = wheel_m_s - belt_m_s * self._cos
+        across = belt_m_s * self._sin
         r.slip_m_s = (along * along + across * across) ** 0.5
 
     def apply(self, out: Setpoints) -> None:
