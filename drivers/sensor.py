@@ -106,7 +106,27 @@ class Sensor(Device):
         read = self._reads[block]
         found: tuple[Any, ...] = read.unpack(data)  # whole numbers, and floats of f32
         if read.cell and self._in_one:
-            self._take_cell(read, found, t)
+            # A load cell, which is read in every scan: its four channels without a loop.
+            x, y, z, m, status = found
+            sx, sy, sz, sm = read.scales
+            lx, ly, lz, lm = read.lows
+            hx, hy, hz, hm = read.highs
+            tx, ty, tz, tm = self.tare
+            counts: list[float] = [x, y, z, m]
+            if counts != self.counts:
+                self.counts = counts
+                self.changed_s = t
+            fx: float = x * sx
+            fy: float = y * sy
+            fz: float = z * sz
+            mz: float = m * sm
+            self.raw = [fx, fy, fz, mz]
+            self.values = [fx - tx, fy - ty, fz - tz, mz - tm]
+            self.status = bits = int(status)
+            self.valid = (
+                lx < fx < hx and ly < fy < hy and lz < fz < hz and lm < mz < hm and not bits & self._invalid_bits
+            )
+            self.stamp_s = t
             return
         if read.status_place >= 0:
             self.status = int(found[read.status_place])
@@ -139,29 +159,6 @@ class Sensor(Device):
                 stamp_s = one.stamp_s
         self.valid = valid and not status & self._invalid_bits
         self.stamp_s = stamp_s
-
-    def _take_cell(self, read: _SensorRead, found: tuple[Any, ...], t: float) -> None:
-        """Do the same for the four channels and the status of a load cell, which is read in every scan."""
-        x, y, z, m, status = found
-        sx, sy, sz, sm = read.scales
-        lx, ly, lz, lm = read.lows
-        hx, hy, hz, hm = read.highs
-        tx, ty, tz, tm = self.tare
-        counts: list[float] = [x, y, z, m]
-        if counts != self.counts:
-            self.counts = counts
-            self.changed_s = t
-        fx: float = x * sx
-        fy: float = y * sy
-        fz: float = z * sz
-        mz: float = m * sm
-        self.raw = [fx, fy, fz, mz]
-        self.values = [fx - tx, fy - ty, fz - tz, mz - tm]
-        self.status = status
-        self.valid = (
-            lx < fx < hx and ly < fy < hy and lz < fz < hz and lm < mz < hm and not status & self._invalid_bits
-        )
-        self.stamp_s = t
 
     def suspend(self) -> None:
         """Mark the last reading as invalid."""

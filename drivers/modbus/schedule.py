@@ -134,6 +134,9 @@ class Schedule:
 
     def succeeded(self, request: Request, t: float) -> None:
         """Set the next due time of a request that was answered at ``t``: on its grid, unless it has fallen behind."""
+        if request is self._steady:
+            request.due_s, request.wish_s = request.sent_s, inf
+            return
         if request.attempts or request.fresh or not request.enabled:
             request.attempts = 0
             self.look_again()

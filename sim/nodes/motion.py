@@ -92,16 +92,12 @@ class VelocityAxis:
         self.still = False
 
     def step(self, dt: float) -> None:
-        """Advance by ``dt`` seconds (>= 0)."""
+        """Advance by ``dt`` seconds (>= 0): from corner to corner of the ramp, the value lagging behind the demand."""
         if self.settled:
             self.position += self.value * dt
-        else:
-            self._ramp(dt)
-        if self._bounded and not self.low <= self.position <= self.high:
-            self._hit_stop()
-
-    def _ramp(self, dt: float) -> None:
-        """Follow the demand from corner to corner of its ramp for ``dt`` seconds, the value lagging behind it."""
+            if self._bounded and not self.low <= self.position <= self.high:
+                self._hit_stop()
+            return
         target, demand, lag = self.target, self.demand, self.lag_s
         yielded = self.yielded
         value, position = self.value + yielded, self.position - yielded * dt
@@ -146,6 +142,8 @@ class VelocityAxis:
             self.settled = True
             self.still = target == 0.0
         self.value = value
+        if self._bounded and not self.low <= self.position <= self.high:
+            self._hit_stop()
 
     def _hit_stop(self) -> None:
         """Rest against the hard stop that was overrun; only a new target moves the axis away again."""

@@ -69,8 +69,8 @@ class Devices(DeviceList):
 
     # Slots: CPython 3.11 looks the methods of an object with more than 30 attributes up anew in every scan.
     __slots__ = (
-        "_contactor_asked", "_contactor_closed", "_cos", "_last_angle_s", "_positioned", "_sideslip_deg", "_sin", "axes",
-        "cell", "jacket", "slip_ring", "thermometer",
+        "_contactor_asked", "_contactor_closed", "_cos", "_last_angle_s", "_positioned", "_sideslip_deg", "_sin",
+        "axes", "cell", "jacket", "slip_ring", "thermometer",
     )  # fmt: skip
 
     def __init__(self, rig: RigConfig, ports: Ports) -> None:
