@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Callable, Sequence
 
-from bench import ladder
+from bench import ladder, promises
 from bench.effort import Effort, TopicFailedError
 from bench.figures import Figure
 from bench.machine import machine
@@ -15,13 +15,14 @@ from bench.report import as_json, as_markdown, missed, table
 
 EXIT_MISSED = 1
 EXIT_USAGE = 2
+COMPARING: dict[str, Callable[[Sequence[str]], int]] = {"ladder": ladder.main, "promises": promises.main}
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Measure, print, and return 1 where a figure misses what is asked, 2 for a wrong call, else 0."""
     words = sys.argv[1:] if arguments is None else arguments
-    if words[:1] == ["ladder"]:  # beside an earlier commit: other options, no topic
-        return ladder.main(words[1:])
+    if words and words[0] in COMPARING:  # with an earlier commit: other options, no topic
+        return COMPARING[words[0]](words[1:])
     parser = _parser()
     given = parser.parse_args(words)
     try:
@@ -58,7 +59,8 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser(
         prog="python -m bench",
         description="Measure what the software costs on this machine. Exit code 1 when a figure misses its limit.",
-        epilog=f"topics:\n{topics}\n\npython -m bench ladder --against COMMIT: speed beside an earlier version",
+        epilog=f"topics:\n{topics}\n\npython -m bench ladder --against COMMIT: speed beside an earlier version\n"
+        "python -m bench promises --against COMMIT: what was to be gained over it",
         formatter_class=argparse.RawDescriptionHelpFormatter,
     )
     parser.add_argument("names", nargs="*", metavar="NAME", help="topics to measure (default: all)")

@@ -14,14 +14,7 @@ recipe, are printed for information (plain only).
 
 from __future__ import annotations
 
-import argparse
-import io
-import json
 import math
-import os
-import subprocess
-import sys
-import tarfile
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from statistics import fmean, stdev
@@ -30,27 +23,13 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from bench.child import ROOT
-from bench.machine import machine
+from bench.versions import Trees, in_turns, measured_on, parser_of, versions
 
 SLIP = 0.97
 """Least ratio that the interval has to reach."""
 ROUNDS, QUICK_ROUNDS = 5, 4
 STUDENT = {2: 12.706, 3: 4.303, 4: 3.182, 5: 2.776, 6: 2.571, 7: 2.447, 8: 2.365, 9: 2.306, 10: 2.262}
 """97.5 % quantile of Student's t by the number of rounds."""
-TESTER = "from tester.cli.main import main; main()"
-PROFILED = """
-import cProfile, json, os, pstats, sys
-from tester.cli.main import invoke
-profile = cProfile.Profile()
-profile.runcall(invoke, sys.argv[1:])
-root, own = sys.path[0] + os.sep, {}
-for (file, _, _), (_, _, alone, _, _) in pstats.Stats(profile).stats.items():
-    name = file[len(root):].replace(os.sep, "/") if file.startswith(root) else "others"
-    own[name] = own.get(name, 0.0) + alone
-print("own " + json.dumps(own))
-"""
-
 Changes = Mapping[str, Any]
 
 BASE: dict[str, Any] = {
@@ -74,44 +53,6 @@ class Recipe(NamedTuple):
     name: str
     text: str
     quick: bool
-
-
-class Tree(NamedTuple):
-    """A version that is measured: the folder its packages are imported from."""
-
-    name: str
-    folder: Path
-
-    def run(self, code: str, *arguments: str) -> str:
-        """Run code with these packages and return its output; a failure ends the measurement."""
-        environment = os.environ | {"PYTHONPATH": str(self.folder)}
-        command = [sys.executable, "-P", "-c", code, *arguments]
-        done = subprocess.run(command, cwd=self.folder, env=environment, capture_output=True, text=True, check=False)
-        if done.returncode:
-            raise SystemExit(f"{self.name}: exit code {done.returncode}\n{done.stderr[-2000:]}")
-        return done.stdout
-
-    def cpu_s(self, recipe: Path, out: Path) -> float:
-        """Run a recipe with seed 1 and return the CPU seconds of the whole command."""
-        before = os.times()
-        self.run(TESTER, "run", str(recipe), "--yes", "--seed", "1", "--out", str(out))
-        after = os.times()
-        return after.children_user - before.children_user + after.children_system - before.children_system
-
-    def own_s(self, recipe: str, out: Path, *options: str) -> dict[str, float]:
-        """Return the CPU seconds in each file of the packages, by a profile; ``others``: outside them."""
-        printed = self.run(PROFILED, "run", recipe, "--yes", "--out", str(out), *options)
-        line = next(line for line in printed.splitlines() if line.startswith("own "))
-        return json.loads(line.removeprefix("own "))
-
-    def parts(self, recipe: Path, out: Path) -> dict[str, float]:
-        """Return the CPU seconds that each part of the packages takes for a recipe, by a profile."""
-        parts: dict[str, float] = {}
-        for file, own_s in self.own_s(str(recipe), out, "--seed", "1").items():
-            names = file.split("/")
-            part = "/".join(names[:2]) if names[0] == "tester" else names[0]
-            parts[part] = parts.get(part, 0.0) + own_s
-        return parts
 
 
 class Ratio(NamedTuple):
@@ -168,54 +109,20 @@ def written(name: str, keys: Changes, measure: Changes, grid: Changes, quick: bo
     return Recipe(name, yaml.safe_dump({"recipe": name} | changed, sort_keys=False), quick)
 
 
-def sources(commit: str | None, folder: Path) -> Path:
-    """Write the sources of a commit, or of this checkout, into a folder and return it."""
-    if commit is None:
-        listed = subprocess.run(
-            ["git", "ls-files", "-co", "--exclude-standard", "-z"], cwd=ROOT, check=True, capture_output=True
-        )
-        for name in filter(None, listed.stdout.decode().split("\0")):
-            if (ROOT / name).is_file():
-                (folder / name).parent.mkdir(parents=True, exist_ok=True)
-                (folder / name).write_bytes((ROOT / name).read_bytes())
-        return folder
-    archive = subprocess.run(["git", "archive", commit], cwd=ROOT, check=False, capture_output=True)
-    if archive.returncode:
-        raise SystemExit(f"no such commit: {commit} ({archive.stderr.decode().strip()})")
-    with tarfile.open(fileobj=io.BytesIO(archive.stdout)) as tar:
-        tar.extractall(folder, filter="data")
-    return folder
-
-
-def compiled(tree: Path, folder: Path) -> Path:
-    """Install a tree with its scan compiled into a folder, without the packages it needs, and return the folder."""
-    command = [sys.executable, "-m", "pip", "install", "--quiet", "--no-deps", "--target", str(folder), str(tree)]
-    done = subprocess.run(command, env=os.environ | {"FRICTION_TESTER_COMPILE": "1"}, capture_output=True, text=True)
-    if done.returncode:
-        raise SystemExit(f"{tree.name} does not compile:\n{done.stderr[-2000:]}")
-    return folder
-
-
 def climb(
-    trees: tuple[Tree, Tree], chosen: Sequence[Recipe], rounds: int, folder: Path, show: Callable[[str], object]
+    trees: Trees, chosen: Sequence[Recipe], rounds: int, folder: Path, show: Callable[[str], object]
 ) -> int:
     """Run the recipes on both trees in turns, show a line for each, and return how many miss."""
     misses = 0
     for recipe in chosen:
-        path = folder / "recipe.yaml"
-        path.write_text(recipe.text, encoding="utf-8")
-        times: tuple[list[float], list[float]] = ([], [])
-        for number in range(rounds):
-            for side in (0, 1) if number % 2 else (1, 0):  # who begins alternates: speed drifts
-                with TemporaryDirectory(dir=folder) as out:
-                    times[side].append(trees[side].cpu_s(path, Path(out)))
+        times = [[cost.cpu_s for cost in costs] for costs in in_turns(trees, recipe.text, rounds, folder)]
         ratio = ratio_of(*times)
         misses += ratio.misses
         show(f"{recipe.name:<24}{ratio}   {fmean(times[0]):.2f} s, {fmean(times[1]):.2f} s")
     return misses
 
 
-def show_parts(trees: tuple[Tree, Tree], recipe: Recipe, folder: Path, show: Callable[[str], object]) -> None:
+def show_parts(trees: Trees, recipe: Recipe, folder: Path, show: Callable[[str], object]) -> None:
     """Show the ratio of each part of the packages in one profiled run of both trees."""
     path = folder / "recipe.yaml"
     path.write_text(recipe.text, encoding="utf-8")
@@ -233,31 +140,16 @@ def show_parts(trees: tuple[Tree, Tree], recipe: Recipe, folder: Path, show: Cal
 
 def main(arguments: Sequence[str]) -> int:
     """Measure and print; return 1 where a ratio misses."""
-    parser = argparse.ArgumentParser(prog="python -m bench ladder", description="Speed beside an earlier commit.")
-    parser.add_argument("--against", required=True, metavar="COMMIT", help="the earlier version")
-    which = parser.add_mutually_exclusive_group()
-    which.add_argument("--plain", action="store_true", help="only as plain Python")
-    which.add_argument("--compiled", action="store_true", help="only compiled")
-    parser.add_argument("--quick", action="store_true", help="short recipes")
+    parser = parser_of("ladder", "Speed beside an earlier commit.")
     parser.add_argument("--rounds", type=int, choices=sorted(STUDENT), help="rounds of every recipe (default 5)")
     options = parser.parse_args(arguments)
     rounds = options.rounds or (QUICK_ROUNDS if options.quick else ROUNDS)
     chosen = [recipe for recipe in recipes() if recipe.quick is options.quick]
     misses = 0
-    print(", ".join(f"{key}: {value}" for key, value in machine().items() if key != "compiled scan"), flush=True)
+    print(", ".join(f"{key}: {value}" for key, value in measured_on().items()), flush=True)
     with TemporaryDirectory(prefix="ladder-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
-        plain = (
-            Tree(options.against, sources(options.against, folder / "before")),
-            Tree("this tree", sources(None, folder / "now")),
-        )
-        for kind in ("plain", "compiled"):
-            if getattr(options, "compiled" if kind == "plain" else "plain"):
-                continue
-            trees = plain
-            if kind == "compiled":
-                before, now = (compiled(tree.folder, folder / f"{tree.folder.name}-compiled") for tree in plain)
-                trees = (Tree(plain[0].name, before), Tree(plain[1].name, now))
+        for kind, trees in versions(options, folder):
             print(f"{kind}: {rounds} rounds; CPU of {options.against} by that of this tree, 95 % interval", flush=True)
             misses += climb(trees, chosen, rounds, folder, lambda line: print(line, flush=True))
             if kind == "plain" and not options.quick:

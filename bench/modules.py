@@ -16,7 +16,7 @@ from tempfile import TemporaryDirectory
 from bench.child import ROOT
 from bench.effort import Effort
 from bench.figures import Figure, at_least, at_most
-from bench.ladder import Tree
+from bench.versions import Tree
 from compiling.modules import HOT, PAYING, THRESHOLD
 
 RECIPES = {"quickstart": ("--seed", "0"), "pin-on-disc": ("--seed", "0", "--rig", "pin-on-disc")}

@@ -8,8 +8,10 @@ from typing import ClassVar
 import pytest
 import yaml
 
+from bench.child import ROOT
 from bench.cli import main as bench
-from bench.ladder import ROOT, Recipe, Tree, climb, ratio_of, recipes
+from bench.ladder import Recipe, climb, ratio_of, recipes
+from bench.versions import Cost, Tree, sources
 from tester.inputs.recipe.loader import load_checked
 from tester.kinds import load_rig
 from tester.kinds.wheel_on_belt.recipe.part import PART
@@ -41,10 +43,11 @@ class Timed(Tree):
 
     order: ClassVar[list[str]] = []
 
-    def cpu_s(self, recipe: Path, out: Path) -> float:
-        assert yaml.safe_load(recipe.read_text(encoding="utf-8")) == {"recipe": "a"}
+    def cost(self, recipe: Path, out: Path, *options: str) -> Cost:
+        assert yaml.safe_load(recipe.read_text(encoding="utf-8")) == {"recipe": "a"} and not options
         self.order.append(self.name)
-        return 1.0 if self.name == "before" else 2.0
+        cpu_s = 1.0 if self.name == "before" else 2.0
+        return Cost(cpu_s, cpu_s, cpu_s, 100.0)
 
 
 def test_trees_run_in_turns_that_alternate_and_a_slow_tree_misses(tmp_path: Path) -> None:
@@ -64,6 +67,4 @@ def test_a_commit_that_does_not_exist_ends_with_its_name(capfd: pytest.CaptureFi
 def test_the_sources_of_this_tree_are_what_git_lists(tmp_path: Path) -> None:
     if not (ROOT / ".git").exists():
         pytest.skip("not a checkout")
-    from bench.ladder import sources
-
     assert (sources(None, tmp_path) / "tester" / "cli" / "main.py").is_file()

@@ -26,7 +26,7 @@ from typing import Any
 
 import yaml
 
-from bench.ladder import TESTER, sources
+from bench.versions import TESTER, sources
 
 ROOT = Path(__file__).parents[2]
 RIGS = {"grosch": "grosch", "pin-on-disc": "pin-on-disc"}
