@@ -1,8 +1,9 @@
-"""`python -m tests.campaigns.leaps [--sample] [--seeds N]`: runs with leaps beside the same runs in which every scan is
-made.
+"""`python -m tests.campaigns.leaps [--sample] [--seeds N] [RECIPE ...]`: runs with leaps beside the same runs in which
+every scan is made.
 
-Wheels and specimens on a track, with all noise and scatter. A condition differs by its coefficient, its temperature, or
-by being kept in one run and lost in the other.
+Wheels and specimens on a track, with all noise and scatter; each seed also draws by how much the rig is unlike what its
+file believes (wear, diameter, heat). A condition differs by its coefficient, its temperature, or by being kept in one
+run and lost in the other.
 """
 
 from __future__ import annotations
@@ -10,12 +11,14 @@ from __future__ import annotations
 import argparse
 import sys
 from pathlib import Path
+from random import Random
 from statistics import median
 from time import process_time
 from typing import NamedTuple
 
 import recipes
 from tester.machine.run import Outcome
+from tests.campaigns.time_left.cases import truth as wheel_truth
 from tests.campaigns.track import FASTER, SAMPLED
 from tests.tester.kinds.specimen_on_track.bench import TrackBench, one_track
 from tests.tester.kinds.wheel_on_belt.bench import Simulation
@@ -48,15 +51,30 @@ class Ended(NamedTuple):
     cpu_s: float
 
 
+def truth(rig: str, seed: int) -> tuple[str, ...]:
+    """Return how a rig is unlike what its file believes, and its recipes reckon with, drawn for a seed."""
+    if rig == WHEEL:
+        return wheel_truth("sim", seed)
+    drawn = Random(f"truth {seed}").uniform
+    return (
+        f"sim.heat.chamber_rate={0.06 * drawn(0.8, 1.2):.4f} K/s",
+        f"sim.heat.chamber_time={1800.0 * drawn(0.8, 1.2):.0f} s",
+        f"sim.heat.specimen_time={300.0 * drawn(0.8, 1.2):.1f} s",
+        f"sim.heat.friction_share={0.1 * drawn(0.5, 2.0):.4f}",
+        f"sim.contact.wear={0.0005 * drawn(0.5, 3.0):.5f} mm/m",
+        f"sim.ambient={23.0 + drawn(-3.0, 3.0):.2f} degC",
+    )
+
+
 def run_of(rig: str, text: str, seed: int, *, leaps: bool) -> Ended:
     """Run a recipe in this process."""
     began_s = process_time()
     if rig == WHEEL:
-        wheel = Simulation(text, seed=seed)
+        wheel = Simulation(text, truth(rig, seed), seed=seed)
         run = (wheel.leaping() if leaps else wheel).to_the_end(1e6).run
         repeats, tripped = of_wheel(wheel), bool(wheel.notes.texts("trip"))
     else:
-        track = TrackBench(rig, text, (), seed)
+        track = TrackBench(rig, text, truth(rig, seed), seed)
         run = (track.leaping() if leaps else track).to_the_end().run
         repeats, tripped = of_track(track), bool(track.kept.trips)
     done = run.outcome is Outcome.DONE and not tripped
@@ -122,9 +140,14 @@ def main(arguments: list[str] | None = None) -> int:
     """Measure; 1 where a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.leaps", description=__doc__)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_SEEDS} seeds of the first recipes, cut short")
-    parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"seeds ({SEEDS})")
+    parser.add_argument("--seeds", type=int, metavar="N", help=f"seeds ({SEEDS})")
+    names = [recipe for recipe, _ in RECIPES]
+    parser.add_argument("recipes", nargs="*", metavar="RECIPE", help=f"{', '.join(names)} (all)")
     read = parser.parse_args(arguments)
-    chosen, seeds = (RECIPES[:2], SAMPLE_SEEDS) if read.sample else (RECIPES, read.seeds)
+    if unknown := sorted({*read.recipes} - {*names}):
+        parser.error(f"no recipe {unknown[0]!r}; there are: {', '.join(names)}")
+    chosen = tuple(one for one in RECIPES if one[0] in read.recipes) or (RECIPES[:2] if read.sample else RECIPES)
+    seeds = SAMPLE_SEEDS if read.sample and read.seeds is None else read.seeds or SEEDS
     missed = sum(measure(recipe, rig, seeds, sample=read.sample) for recipe, rig in chosen)
     print("every figure met" if not missed else f"{missed} missed")
     return 1 if missed else 0
