@@ -106,4 +106,5 @@ def present(hello: Hello, client: Client) -> Hello:
     return replace(
         hello, version=VERSION, machine=client.machine, state=client.state, plan=client.plan,
         events=tuple(client.events), complete=client.complete, trend=tuple(client.trend), queue=client.queue,
+        results=client.results,
     )  # fmt: skip

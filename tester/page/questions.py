@@ -21,13 +21,13 @@ from pydantic_core import to_json
 
 from tester.base.processes import tester_command
 from tester.page.answers import Download, Tickets
-from tester.page.data_process import NICE
 from tester.page.data_worker import DataWorker
 from tester.page.front import PageQuestion
 from tester.page.pairing import Pairing, Pairings
 from tester.page.reception import AskError
 from tester.page.roles import includes
 from tester.page.stored.asked import ASKED, PREPARE, WRITING
+from tester.service.asked_process import NICE
 
 WITHIN_S = 120.0
 """Time for writing a download, s [A]: a report of 165 conditions takes 20 s."""
@@ -83,7 +83,7 @@ class Questions:
 
     async def _prepared(self, run: str) -> None:
         with suppress(AskError, TimeoutError):  # the first picture then makes it
-            await self._writing.ask(PREPARE, {"run": run}, "")
+            await self._writing.answer(PREPARE, {"run": run}, "")
 
     async def __aexit__(self, *_: object) -> None:
         """End the processes."""
@@ -105,7 +105,7 @@ class Questions:
         if name in WRITING and not includes(pairing.role, "control"):
             raise AskError(f"{name} needs the role control, and this page has {pairing.role}")
         worker = self._writing if name in WRITING else self._reading
-        return await worker.ask(name, question.rest, pairing.recorded)
+        return await worker.answer(name, question.rest, pairing.recorded)
 
     def _listed(self) -> list[JsonValue]:
         return [

@@ -78,6 +78,16 @@ def recipe_rows(table: Table[ConditionRow]) -> Table[ConditionRow]:
     return table.of(row for row in table.rows if row.whole and not row.reference)
 
 
+def value_words(table: Table[ConditionRow], row: ConditionRow) -> str:
+    """Return a condition's mu with its mark, and U of what is mounted, as every table prints them: 0.707 ± 0.029.
+
+    Without a coefficient it is the condition's status. ``table`` has the columns.
+    """
+    if not isfinite(row.result.mu):
+        return row.result.status.value
+    return f"{table['mu'].text(row)} ± {table['u_expanded'].text(row)}"
+
+
 def axis_keys(axes: Iterable[Axis]) -> tuple[str, ...]:
     """Return the keys of the columns that identify a row's condition: compound and some axes."""
     return ("compound", *(axis.column for axis in axes))

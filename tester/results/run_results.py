@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import groupby
 from math import isfinite
@@ -11,7 +11,7 @@ from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, THERMOMET
 from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
 from tester.analysis.reference import RESERVED, ReferenceWatch, doubted, is_reference
-from tester.analysis.repeats import combine_replicates
+from tester.analysis.repeats import ConditionResult, combine_replicates
 from tester.analysis.results import NAN, SoakCheck
 from tester.analysis.ring_errors import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
@@ -139,14 +139,12 @@ def results_of(reader: RunReader) -> RunResults:
     run, pieces, checks = reader.run(), tuple(reader.pieces()), tuple(reader.wear_checks())
     conditions = _combined(reader, run)
     references = [condition for condition in conditions if _watches(condition, run)]
-    ordinary = [condition for condition in conditions if not _watches(condition, run)]
-    pool = pooled([condition.result for condition in conditions])
-    measured = [(condition.info.setpoint, condition.result) for condition in ordinary]
-    surroundings = SurroundingsOf(reader, run, pieces, checks, pool, measured)
+    surroundings = surroundings_of(reader, run, conditions, pieces, checks)
     watch = None
     if references:
         watch = surroundings.watch(references, reserved=RESERVED in run.info.metadata)
-        doubts = doubted(watch.charts, [condition.info.condition for condition in ordinary])
+        ordinary = [condition.info.condition for condition in conditions if not _watches(condition, run)]
+        doubts = doubted(watch.charts, ordinary)
         flags = dict.fromkeys(doubts, OUT_OF_LIMITS) | {c.info.condition: REFERENCE for c in references}
         conditions = [_flagged(c, flags[c.info.condition]) if c.info.condition in flags else c for c in conditions]
     conditions, settings = _budgeted(conditions, surroundings)
@@ -164,6 +162,19 @@ def results_of(reader: RunReader) -> RunResults:
         settings,
         reader.record_head(),
     )
+
+
+def surroundings_of(
+    reader: RunReader,
+    run: StoredRun,
+    conditions: Sequence[Measured],
+    pieces: Sequence[PieceInfo],
+    checks: Sequence[WearCheck],
+) -> SurroundingsOf:
+    """Return the sources of uncertainty of a run's conditions; raises StoreError."""
+    pool = pooled([condition.result for condition in conditions])
+    ordinary = [(c.info.setpoint, c.result) for c in conditions if not _watches(c, run)]
+    return SurroundingsOf(reader, run, pieces, checks, pool, ordinary)
 
 
 def _watches(measured: Measured | TableRow, run: StoredRun) -> bool:
@@ -227,19 +238,28 @@ def _measured(
     combining: Combining,
     soak: SoakCheck | None,
 ) -> Measured:
-    info = stored.info
     by_hand = {i: left_out[repeat.target] for i, repeat in enumerate(repeats) if repeat.target in left_out}
-    result = info.scheme.combine(
+    return Measured(stored, tuple(repeats), combined(stored, repeats, by_hand, combining), by_hand, soak)
+
+
+def combined(
+    stored: StoredCondition,
+    repeats: Sequence[StoredRepeat],
+    by_hand: Mapping[int, StoredExclusion],
+    combining: Combining,
+) -> ConditionResult:
+    """Return a condition's result, without a budget, from its first repeats; ``by_hand``: as of ``Measured``."""
+    info = stored.info
+    return info.scheme.combine(
         [repeat.result for repeat in repeats],
         planned=info.repeats,
         min_valid=info.min_valid,
         ended=stored.status,
         reason=stored.reason,
         judged=stored.judged,
-        by_hand={i: exclusion.reason for i, exclusion in by_hand.items()},
+        by_hand={i: exclusion.reason for i, exclusion in by_hand.items() if i < len(repeats)},
         combining=combining,
     )
-    return Measured(stored, tuple(repeats), result, by_hand, soak)
 
 
 @dataclass(frozen=True, slots=True)

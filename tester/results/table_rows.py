@@ -32,6 +32,11 @@ class Measured:
         return self.condition.info
 
     @property
+    def begun(self) -> bool:
+        """Return whether the run has begun this condition, or ended it without."""
+        return isfinite(self.condition.started_s) or self.condition.status is not None
+
+    @property
     def last_piece(self) -> int:
         """Return the piece of the last valid repeat, 0 without one."""
         return next((repeat.piece for repeat in reversed(self.repeats) if repeat.result.valid), 0)

@@ -41,11 +41,13 @@ from tester.service.protocol import (
     PlanMessage,
     QueueMessage,
     Refused,
+    ResultsMessage,
     ServerMessage,
     Snapshot,
     encode,
     from_server,
 )
+from tester.service.results_view import ResultsView
 from tester.service.state_view import PlanView, StateView
 from tester.service.stop_call import takes_stop
 
@@ -70,7 +72,7 @@ class LostError(Exception):
     """The connection has ended; the message gives the service's reason if it sent one."""
 
 
-Newest: TypeAlias = Hello | Snapshot | PlanMessage | QueueMessage | MachineMessage | Frames
+Newest: TypeAlias = Hello | Snapshot | PlanMessage | ResultsMessage | QueueMessage | MachineMessage | Frames
 """Messages of which only the newest counts."""
 Gone: TypeAlias = Literal["", "ended", "died"]
 """How the service ended: unknown, on request, or without a request."""
@@ -85,7 +87,7 @@ class Lost:
 
 
 class Client:
-    """One connection. ``state``, ``plan``, ``queue``, ``events`` and ``trend`` always hold the newest data."""
+    """One connection. ``state``, ``plan``, ``results``, ``queue``, ``events``, ``trend`` hold the newest data."""
 
     def __init__(self, connection: ClientConnection, hello: Hello) -> None:
         """Use ``Client.connect`` instead."""
@@ -95,6 +97,7 @@ class Client:
         self.state: StateView = hello.state
         self.plan: PlanView | None = hello.plan
         self.queue: QueueView | None = hello.queue
+        self.results: ResultsView | None = hello.results
         self.events: deque[Event] = deque(hello.events, maxlen=EVENTS_KEPT)
         self.complete = hello.complete
         """Whether no event is missing between those seen before and ``events``."""
@@ -245,6 +248,8 @@ class Client:
                 self.plan = message.plan
             elif isinstance(message, QueueMessage):
                 self.queue = message.queue
+            elif isinstance(message, ResultsMessage):
+                self.results = message.results
             elif isinstance(message, MachineMessage):
                 self.machine = message.machine
                 self.trend.clear()

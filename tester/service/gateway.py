@@ -38,6 +38,7 @@ from tester.service.commands import (
     WatchFrames,
 )
 from tester.service.guests import Guest, Guests
+from tester.service.live_results import LiveResults
 from tester.service.manners import MOST_CLIENTS, Strangers
 from tester.service.protocol import (
     EVENTS_KEPT,
@@ -105,6 +106,7 @@ class Gateway:
         self._state = b""
         self._plan = b"null"
         self.queue = QueueAnswers()
+        self.results = LiveResults(queries.runs, self._take_results, lambda: bool(self.guests))
         self._machine = to_json(UNKNOWN)
         """Tables of the kind of rig; the owner sends them before its first state."""
         self._events: deque[tuple[int, bytes]] = deque(maxlen=EVENTS_KEPT)
@@ -125,6 +127,7 @@ class Gateway:
         elif kind == b"e":
             number, _, event = rest.partition(b" ")
             self._events.append((int(number), event))
+            self.results.event(event)
             for guest in self.guests.values():
                 guest.outbox.event(event)
                 self._keep(guest)
@@ -151,14 +154,16 @@ class Gateway:
         elif kind == b"f":
             self.guests.newest("frames", rest)
 
+    def _take_results(self, results: bytes) -> None:
+        self.guests.newest("results", b'{"results":' + results + b',"type":"results"}')
+
     def _take_machine(self, machine: bytes) -> None:
         """Store the tables of a kind of rig. If they change, drop the trend, whose columns belong to the old kind."""
-        if machine == self._machine:
-            return
-        self._machine = machine
-        self._rows.clear()
-        for guest in self.guests.values():
-            self._reply(guest, b'{"machine":' + machine + b',"type":"machine"}')
+        if machine != self._machine:
+            self._machine = machine
+            self._rows.clear()
+            for guest in self.guests.values():
+                self._reply(guest, b'{"machine":' + machine + b',"type":"machine"}')
 
     def farewell(self) -> None:
         """Send every client a ``goodbye``: the owner has ended or, if it sent no goodbye itself, has died."""
@@ -249,7 +254,8 @@ class Gateway:
                 b'"control":' + (b"true" if self.guests.controller == guest.number else b"false"),
                 b',"machine":' + self._machine + b',"state":' + self._state + b',"plan":' + self._plan,
                 b',"events":[' + b",".join(sent) + b'],"complete":' + (b"true" if complete else b"false"),
-                b',"trend":[' + b",".join(self._rows) + b'],"queue":' + self.queue.encoded + b',"type":"hello"}',
+                b',"trend":[' + b",".join(self._rows) + b'],"queue":' + self.queue.encoded,
+                b',"results":' + self.results.encoded + b',"type":"hello"}',
             )
         )
 
@@ -262,13 +268,10 @@ class Gateway:
             return
 
     async def _drop(self, guest: Guest) -> None:
-        """Disconnect a client that does not keep up. Events are never left out, so the gateway cannot skip some
-        instead.
-        """
+        """Disconnect a client that does not keep up: events are never left out."""
         await guest.connection.close(FELL_BEHIND, f"{guest.outbox.behind} messages behind: come back with since")
 
     def _reply(self, guest: Guest, message: bytes) -> None:
-        """Send a client an answer."""
         guest.outbox.reply(message)
         self._keep(guest)
 

@@ -66,10 +66,12 @@ async def _serve(reader: asyncio.StreamReader, writer: asyncio.StreamWriter, set
     async with listening(gateway, address) as listens:
         if isinstance(listens, TcpAddress):
             write_card(listens, path)
+        results = asyncio.create_task(gateway.results.work())
         with suppress(ConnectionError):  # an owner that dies with unread input resets the connection
             while line := await reader.readline():
                 gateway.take(line[:-1])
         gateway.farewell()
+        results.cancel()
         if not gateway.ended:
             last = died(f"{settings.service}-died", clock.utc_now(), settings.rig)
             notices.take(NOTE.dump_json(last))

@@ -1,4 +1,4 @@
-"""Pending messages to one client: all answers and events, and only the newest state, plan and queue."""
+"""Pending messages to one client: all answers and events, and only the newest state, plan, results and queue."""
 
 from __future__ import annotations
 
@@ -12,7 +12,9 @@ MOST_REPLIES = 128
 
 
 class Outbox:
-    """A queue that never blocks the sender and returns messages by urgency: answers, events, plan, queue, state."""
+    """A queue that never blocks the sender and returns messages by urgency: answers, events, plan, results, queue,
+    state.
+    """
 
     def __init__(self) -> None:
         """Begin empty."""
@@ -55,7 +57,7 @@ class Outbox:
                 return self._replies.popleft()
             if self._events:
                 return self._events.popleft()
-            for kind in ("plan", "queue", "snapshot", "frames"):
+            for kind in ("plan", "results", "queue", "snapshot", "frames"):
                 if kind in self._newest:
                     return self._newest.pop(kind)
             self._something.clear()

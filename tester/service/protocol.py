@@ -17,6 +17,7 @@ from pydantic_core import from_json
 from tester.base.screen import MachineView
 from tester.queue.view import QueueView
 from tester.service.commands import VERSION, ClientMessage, Command, Join, Stop
+from tester.service.results_view import ResultsView
 from tester.service.state_view import PlanView, StateView
 
 SNAPSHOT_S = 0.25
@@ -52,7 +53,7 @@ class Hello:
     ``service`` identifies this instance of the service: ``since`` counts only within it. ``events``: those after
     ``since``, or the last 200; ``complete`` is False when some of them are no longer kept. ``client``: this client's
     number; ``control``: whether it is the controller. ``machine``: the tables of the kind of rig; ``trend``: rows of
-    its columns, oldest first; None is a missing value. ``queue``: the queue of the rig.
+    its columns, oldest first; None is a missing value. ``queue``: the queue of the rig; ``results``: of the newest run.
     """
 
     version: int
@@ -67,6 +68,7 @@ class Hello:
     complete: bool
     trend: tuple[tuple[float | None, ...], ...]
     queue: QueueView | None = None
+    results: ResultsView | None = None
     type: Literal["hello"] = "hello"
 
 
@@ -106,6 +108,16 @@ class QueueMessage:
 
     queue: QueueView
     type: Literal["queue"] = "queue"
+
+
+@dataclass(frozen=True, slots=True)
+class ResultsMessage:
+    """The results of the newest run: after each repeat and condition, and every two seconds while a repeat grows; a
+    slow client receives only the newest.
+    """
+
+    results: ResultsView
+    type: Literal["results"] = "results"
 
 
 @dataclass(frozen=True, slots=True)
@@ -158,7 +170,8 @@ class Goodbye:
 
 
 ServerMessage: TypeAlias = Annotated[
-    Hello | Snapshot | Event | PlanMessage | QueueMessage | MachineMessage | Frames | Accepted | Refused | Goodbye,
+    Hello | Snapshot | Event | PlanMessage | ResultsMessage | QueueMessage | MachineMessage | Frames
+    | Accepted | Refused | Goodbye,
     Field(discriminator="type"),
 ]
 

@@ -10,6 +10,7 @@ from math import ceil
 from tester.machine.time_left import STANDSTILL
 from tester.service.protocol import Event
 from tester.service.state_view import PlanStep, PlanView, StepState
+from tester.store.records import StoredCondition
 
 _STOPS = re.compile(r"(run|hold) -> (?!run\b|hold\b)")
 """Pattern of the event text for a change of mode that ends a run, or a part of it."""
@@ -23,6 +24,8 @@ class RecordedStep:
     title: str
     began_s: float
     ended_s: float
+    condition: int = 0
+    """Number of the condition that it measures, 0 for another step."""
 
     @property
     def took_s(self) -> float:
@@ -30,8 +33,10 @@ class RecordedStep:
         return float(round(self.ended_s - self.began_s))
 
 
-def recorded_steps(events: Iterable[Event], length_s: float) -> tuple[RecordedStep, ...]:
-    """Return the steps of a journal in order; ``length_s``: rig seconds of the run.
+def recorded_steps(
+    events: Iterable[Event], length_s: float, conditions: Sequence[StoredCondition] = ()
+) -> tuple[RecordedStep, ...]:
+    """Return the steps of a journal in order; ``length_s``: rig seconds of the run; ``conditions``: of its record.
 
     A run whose parts ran side by side has no journal, and therefore no steps.
     """
@@ -43,9 +48,14 @@ def recorded_steps(events: Iterable[Event], length_s: float) -> tuple[RecordedSt
             begun.append((STANDSTILL, "to standstill", event.t_s))
     ends = [*(began_s for _, _, began_s in begun), length_s][1:]  # none if no step began
     return tuple(
-        RecordedStep(kind, title, began_s, max(ended_s, began_s))
+        RecordedStep(kind, title, began_s, max(ended_s, began_s), _measured(conditions, began_s, ended_s))
         for (kind, title, began_s), ended_s in zip(begun, ends, strict=True)
     )
+
+
+def _measured(conditions: Sequence[StoredCondition], began_s: float, ended_s: float) -> int:
+    """Return the condition that began during a step, 0 if none did."""
+    return next((one.info.condition for one in conditions if began_s <= one.started_s < ended_s), 0)
 
 
 def present_of(steps: Sequence[RecordedStep], at_s: float) -> int:
@@ -68,7 +78,7 @@ def plan_of(name: str, steps: Sequence[RecordedStep], at_s: float) -> PlanView:
     listed = tuple(
         PlanStep(
             number, step.kind, step.title, _state(number, here, step, at_s), step.took_s,
-            step.took_s if step.ended_s <= at_s else None, step.took_s,
+            step.took_s if step.ended_s <= at_s else None, step.took_s, step.condition,
         )
         for number, step in enumerate(steps, 1)
     )  # fmt: skip

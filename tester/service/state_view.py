@@ -248,7 +248,8 @@ class PlanStep:
     """One step: its number from 1, its estimated seconds from before the run, and the measured seconds once it is done.
 
     ``expected_s``: its duration as now expected from the run so far, whole seconds. The kind ``standstill`` is not a
-    step of the plan: it is the way to standstill after each part.
+    step of the plan: it is the way to standstill after each part. ``condition``: number of the condition that it
+    measures, 0 for another step.
     """
 
     number: int
@@ -258,6 +259,7 @@ class PlanStep:
     estimated_s: float
     measured_s: float | None
     expected_s: float
+    condition: int = 0
 
 
 @dataclass(frozen=True, slots=True)

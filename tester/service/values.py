@@ -186,6 +186,7 @@ class PlanTrack(TimeLeft):
             PlanStep(
                 i + 1, STANDSTILL if step is None else step.kind, self._title(step), self._state(i), self.estimated[i],
                 self.measured.get(i), float(self.ahead[i]),
+                step.condition if isinstance(step, ConditionStep) else 0,
             )
             for i, step in enumerate(self.steps[first:behind], first)
         )  # fmt: skip

@@ -15,9 +15,11 @@ from tester.base.screen import MachineView, PlotView, Value, trend_columns
 from tester.results.run_results import results_of
 from tester.run.kind_lookup import load_rig_text, served_kind
 from tester.run.run_materials import law_copies
+from tester.service.present_results import results_view
 from tester.service.protocol import Event
 from tester.service.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
 from tester.service.recorded_values import recorded_setpoint, recorded_value
+from tester.service.results_view import ResultsView
 from tester.service.state_view import (
     ClientsView,
     DiskView,
@@ -68,6 +70,7 @@ class Playback:
     events: tuple[Event, ...]
     event_times: tuple[float, ...]
     steps: tuple[RecordedStep, ...]
+    results: ResultsView
 
     @property
     def length_s(self) -> float:
@@ -81,6 +84,7 @@ class Playback:
         scene.replayed = True
         scene.machine = self.machine
         scene.state = self._state(at_s, index, condition)
+        scene.results = self.results
         scene.plan = plan_of(self.run.info.recipe_name, self.steps, at_s)
         scene.events.clear()
         scene.events.extend(self.events[: bisect_right(self.event_times, at_s)])
@@ -172,14 +176,16 @@ def load(folder: Path) -> Playback:
             Event(e.sequence, e.t_s, e.utc, e.kind, e.severity, e.text, run.info.name) for e in reader.events()
         )
         repeats = tuple(reader.repeats(attempts=True))
-        quantities = reader.quantities()
+        quantities, conditions = reader.quantities(), tuple(reader.conditions())
         shown = unknown_values(quantities, rig)
         spacing_s = max(SPACING_S, run.rig_seconds / MOST)
         return Playback(
             run, results.status.value, rig.name, drawn_as(quantities, shown, kind.machine), quantities, shown,
             _thinned(reader, spacing_s),
-            tuple(reader.conditions()), repeats, {r.key: tuple(reader.bursts(r.key)) for r in repeats}, events,
-            tuple(event.t_s for event in events), recorded_steps(events, run.rig_seconds),
+            conditions, repeats, {r.key: tuple(reader.bursts(r.key)) for r in repeats}, events,
+            tuple(event.t_s for event in events),
+            recorded_steps(events, run.rig_seconds, conditions), 
+            results_view(reader, results, run.info.name, running=False),
         )  # fmt: skip
 
 

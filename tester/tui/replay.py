@@ -75,7 +75,7 @@ class ReplayApp(TesterApp):
         """``playback``, ``stored``: the run's record and its table."""
         super().__init__(TuiOptions(plain=plain, start=False, theme=theme, runs=Path(stored.folder).parent))
         self.playback, self.stored = playback, stored
-        self.scene.results = stored
+        self.scene.table = stored
         self.at_s = 0.0
         self.playing = False
         self.speed = 60.0

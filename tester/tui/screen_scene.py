@@ -21,9 +21,11 @@ from tester.service.protocol import (
     MachineMessage,
     PlanMessage,
     QueueMessage,
+    ResultsMessage,
     ServerMessage,
 )
 from tester.service.protocol import Snapshot as SnapshotMessage
+from tester.service.results_view import ResultsView
 from tester.service.state_view import Alarm, PlanView, RunView, StateView
 
 if TYPE_CHECKING:
@@ -73,8 +75,10 @@ class ScreenScene:
     controls: bool = False
     view_only: bool = False
     replayed: bool = False
-    results: Stored | None = None
-    """What the run on display has given so far, as `tester show` prints it; None until it has been read."""
+    results: ResultsView | None = None
+    """What the run on display has given so far; None until that is known."""
+    table: Stored | None = None
+    """The table of a run that has ended, as `tester show` prints it; None until it has been read."""
 
     @property
     def age_s(self) -> float:
@@ -85,6 +89,13 @@ class ScreenScene:
     def linked(self) -> bool:
         """Return whether the display is up to date."""
         return self.state is not None and not self.lost and self.age_s <= STALE_S
+
+    @property
+    def given(self) -> ResultsView | None:
+        """Return the results of the run on display; None where they are of another run, or not known."""
+        run = self.state.run if self.state is not None else None
+        found = self.results
+        return found if found is not None and run is not None and found.run == run.name else None
 
     @property
     def ended_run(self) -> RunView | None:
@@ -107,6 +118,8 @@ class ScreenScene:
             self.events.append(message)
         elif isinstance(message, PlanMessage):
             self.plan = message.plan
+        elif isinstance(message, ResultsMessage):
+            self.results = message.results
         elif isinstance(message, QueueMessage):
             self.queue = message.queue
         elif isinstance(message, MachineMessage):
@@ -122,7 +135,7 @@ class ScreenScene:
 
     def _greet(self, hello: Hello) -> None:
         self.state, self.plan, self.received_s = hello.state, hello.plan, self.now()
-        self.queue = hello.queue
+        self.queue, self.results = hello.queue, hello.results
         if not hello.complete or hello.service != self.service:
             self.events.clear()
         self.service = hello.service

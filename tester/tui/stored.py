@@ -10,7 +10,7 @@ from tester.analysis.flags import FLAGS, flags_in
 from tester.base.axes import Axes, Axis, ListWords, Setpoint, condition_words
 from tester.base.quantities import GATE
 from tester.results.columns import Output, Table
-from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table
+from tester.results.conditions_table import ConditionRow, axis_keys, conditions_table, value_words
 from tester.results.measured_tables import repeats_table
 from tester.results.run_results import RunResults, results_of
 from tester.results.tally import flag_words, tally_of
@@ -79,11 +79,6 @@ class Stored:
     values: int = 0
     """Number of these conditions that have a trustworthy value."""
 
-    def titled(self, title: str) -> tuple[Row, ...]:
-        """Return the conditions that a step of this title measures, replicates in order."""
-        words = ListWords([row.held for row in self.rows])
-        return tuple(row for row in self.rows if title in (words.of(row.held), condition_words(row.held)))
-
     @property
     def plotted(self) -> tuple[Axis, ...]:
         """Axes against which to plot the coefficient: the paper's, and others that differ between these conditions."""
@@ -134,8 +129,7 @@ def _row(one: ConditionRow, view: Table[ConditionRow]) -> Row:
     flags = tuple(flag_words(FLAGS[word]) for word in flags_in(result.flags) if word in FLAGS)
     cells = tuple(column.text(one) for column in view.columns)
     u = result.budget.expanded
-    short = f"{view['mu'].text(one)} ± {view['u_expanded'].text(one)}" if mu is not None else result.status.value
-    known_u = u if isfinite(u) else None
+    known_u, short = u if isfinite(u) else None, value_words(view, one)
     return Row(cells, setpoint, setpoint.compound, mu, one.info.condition, one.mark, known_u, short, figures, flags)
 
 

@@ -206,8 +206,8 @@ def heap(served: Front, launched: Browser, hours: int) -> list[Figure]:
     pass_time(0, SNAPSHOTS_A_RIG_HOUR)
     before = used_mb()
     pass_time(SNAPSHOTS_A_RIG_HOUR, hours * SNAPSHOTS_A_RIG_HOUR)
+    drawn = page.locator(".about-run").inner_text()  # before garbage is collected: two seconds without news are stale
     after = used_mb()
-    drawn = page.locator(".about-run").inner_text()
     context.close()
     return [
         at_most(

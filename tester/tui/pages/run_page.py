@@ -32,8 +32,6 @@ SIGNS = {"done": "✔", "now": "▶", "later": "·"}
 TIME = 9
 WITH_BOTH = 56
 """Columns from which a finished condition's row has its value and its time."""
-READ_EVERY_S = 2.0
-"""Least time between two readings of the run's record for its results, s: each takes the time of `tester show` [A]."""
 
 
 class StepsPanel(Panel):
@@ -52,11 +50,7 @@ class StepsPanel(Panel):
             *shown, last = shown
             below, more = (last, *below), more + 1
         left_s = scene.state.progress.step_left_s if scene.state is not None else None
-        whole = plan.first == 1
-        lines = [
-            step_row(step, width, left_s, step_value(scene.results, plan.steps, at, whole=whole))
-            for at, step in enumerate(shown, first)
-        ]
+        lines = [step_row(step, width, left_s, step_value(scene, step)) for step in shown]
         if more:
             beyond_s = sum(step.expected_s for step in below) + plan.beyond_s
             lines.append([_row("·", f"{more} more steps", f"~{duration(beyond_s)}", width)])
@@ -139,9 +133,8 @@ class RunPage(View, can_focus=True):
         """``plain``: draw trends in ASCII."""
         super().__init__(id=id)
         self.plain = plain
-        self._read: tuple[str, int, str] | None = None
-        """Run, number of finished conditions and outcome for which the results were read."""
-        self._read_again_s = 0.0
+        self._read: tuple[str, str] | None = None
+        """Run and outcome for which the table was read."""
 
     def compose(self) -> ComposeResult:
         """Lay out the panels."""
@@ -164,7 +157,8 @@ class RunPage(View, can_focus=True):
     def show(self, scene: ScreenScene) -> None:
         """Show the scene: the gauges while a run is under way, its results once it has ended."""
         self._follow(scene)
-        ended = scene.ended_run is not None and scene.results is not None and not scene.replayed
+        known = scene.table is not None or (scene.given is not None and scene.plan is not None)
+        ended = scene.ended_run is not None and known and not scene.replayed
         self.set_class(ended, "-ended")
         values = self.query_one("#values")
         latest = Content(latest_words(scene))
@@ -173,29 +167,26 @@ class RunPage(View, can_focus=True):
         super().show(scene)
 
     def _follow(self, scene: ScreenScene) -> None:
-        """Read the run's results when another condition is over, and at its end."""
+        """Read the run's table at its end."""
         run = scene.state.run if scene.state is not None else None
-        if scene.replayed or scene.state is None or run is None or not run.folder:
+        if scene.replayed or run is None or not run.folder:
             return
-        wanted = (run.folder, scene.state.progress.over, run.outcome)
-        again = self._read is not None and self._read[0] == run.folder
-        if not again:
-            scene.results = None
-        early = run.outcome == UNDER_WAY and (not wanted[1] or (again and scene.now() < self._read_again_s))
-        if wanted == self._read or early:
+        wanted = (run.folder, run.outcome)
+        if wanted == self._read:
             return
-        self._read, self._read_again_s = wanted, scene.now() + READ_EVERY_S
-        self.run_worker(partial(self._read_results, scene, run.folder), group="results", exclusive=True,
-                        exit_on_error=False)  # fmt: skip
+        self._read, scene.table = wanted, None
+        if run.outcome != UNDER_WAY:
+            self.run_worker(partial(self._read_table, scene, run.folder), group="results", exclusive=True,
+                            exit_on_error=False)  # fmt: skip
 
-    async def _read_results(self, scene: ScreenScene, folder: str) -> None:
-        """Read the results; a record that is elsewhere, or not readable yet, shows nothing."""
+    async def _read_table(self, scene: ScreenScene, folder: str) -> None:
+        """Read the table; of a record that is elsewhere the service's results are shown."""
         try:
             found = await asyncio.to_thread(read, folder, self.host.options.runs)
         except (StoreError, OSError, sqlite3.Error):
             return
         if scene.state is not None and scene.state.run is not None and scene.state.run.folder == folder:
-            scene.results = found
+            scene.table = found
             self.host.scene_changed()
 
     def action_answer(self) -> None:

@@ -1,43 +1,53 @@
-"""The results of a run: the last finished condition while it runs, and the table at its end, in place of the gauges."""
+"""The results of a run: its conditions' values while it runs, and the table at its end, in place of the gauges."""
 
 from __future__ import annotations
 
+from tester.service.results_view import GrowingView
 from tester.service.state_view import PlanStep
 from tester.tui.formatting import clean, fit
 from tester.tui.screen_scene import ScreenScene
-from tester.tui.stored import Stored, row_words
+from tester.tui.stored import row_words
 from tester.tui.widgets.panel_base import FAINT, Panel, Parts, rows
 
 CELL = 24
 """Most characters of a cell."""
 
 
-def step_value(stored: Stored | None, steps: tuple[PlanStep, ...], at: int, *, whole: bool) -> str:
-    """Return what the finished condition of a step gave, as every table prints it; "" if unknown.
-
-    ``whole``: the list begins with the plan's first step. Otherwise replicates, whose titles are alike, cannot be told
-    apart, and have none.
+def step_value(scene: ScreenScene, step: PlanStep) -> str:
+    """Return what the condition of a step has given, as every table prints it; while it is measured, what it gives so
+    far. "" for another step, and while nothing is known.
     """
-    step = steps[at]
-    if stored is None or step.state != "done":
+    given = scene.given
+    if given is None or not step.condition or step.state == "later":
         return ""
-    alike = stored.titled(step.title)  # none for a step that is no condition
-    if len(alike) > 1 and not whole:
-        return ""
-    turn = sum(other.title == step.title for other in steps[:at])
-    return alike[turn].short if turn < len(alike) else ""
+    growing = given.growing
+    if growing is not None and growing.condition == step.condition:
+        return growing.grown[-1].text if growing.grown else ""
+    found = given.of(step.condition)
+    return found.text if found is not None and step.state == "done" else ""
 
 
 def latest_words(scene: ScreenScene) -> str:
-    """Return the last finished condition with its value, as a line; "" while there is none."""
-    stored, plan = scene.results, scene.plan
-    if stored is None or plan is None:
+    """Return the present condition's value as it grows, else the last one with its value, as a line; "" without."""
+    given = scene.given
+    if given is None:
         return ""
-    for at in range(len(plan.steps) - 1, -1, -1):
-        value = step_value(stored, plan.steps, at, whole=plan.first == 1)
-        if value:
-            return f"last: {clean(plan.steps[at].title, 60)}: {value}"
+    if given.growing is not None and (words := growing_words(given.growing)):
+        return words
+    for step in reversed(scene.plan.steps if scene.plan is not None else ()):
+        if value := step_value(scene, step):
+            return f"last: {clean(step.title, 60)}: {value}"
     return ""
+
+
+def growing_words(growing: GrowingView) -> str:
+    """Return a condition's value so far in words; "" before there is any."""
+    words: list[str] = []
+    if growing.grown:
+        words.append(f"{growing.grown[-1].text} after {growing.grown[-1].repeats} of {growing.asked}")
+    if growing.open is not None:
+        words.append(f"repeat {growing.open.repeat}: {growing.open.mu:.3f} so far")
+    return f"now: {'; '.join(words)}" if words else ""
 
 
 class EndedPanel(Panel):
@@ -45,20 +55,35 @@ class EndedPanel(Panel):
 
     def picture(self, scene: ScreenScene, width: int, height: int) -> Parts:
         """Return headings and a row for each condition, as many as fit."""
-        stored = scene.results
+        stored = scene.table
         if stored is None:
-            return [("the results are being read …", FAINT)]
+            return self._of_service(scene, width, height)
         self.entitle(f"Results of {clean(stored.name, 60)}: {stored.values} of {stored.conditions} with a value")
         table = [stored.header, *(tuple(clean(cell, CELL) for cell in row.cells) for row in stored.rows)]
         if height > 2 and sum(_widths(table)) + 2 * len(stored.header) > width:  # the setpoints in words, and the value
             table = [("condition", "mu ± U"), *((clean(row_words(row), 60), row.short) for row in stored.rows)]
-        widths = _widths(table)
-        texts = ["  ".join(cell.ljust(room) for cell, room in zip(line, widths, strict=True)) for line in table]
-        hidden = len(texts) - height
-        if hidden > 0:
-            texts[height - 1 :] = [f"… {hidden + 1} more: Enter shows all"]
-        lines: list[Parts] = [[(fit(text, width), "bold" if at == 0 else "")] for at, text in enumerate(texts)]
-        return rows(lines)
+        return _lines(table, width, height)
+
+    def _of_service(self, scene: ScreenScene, width: int, height: int) -> Parts:
+        """Return what the service has sent, for a screen on another computer than the record."""
+        given, plan = scene.given, scene.plan
+        if given is None or plan is None:
+            return [("the results are being read …", FAINT)]
+        self.entitle(f"Results of {clean(given.run, 60)}")
+        listed = [(step, value) for step in plan.steps if step.condition and (value := given.of(step.condition))]
+        return _lines(
+            [("condition", "mu ± U"), *((clean(step.title, 60), value.text) for step, value in listed)], width, height
+        )
+
+
+def _lines(table: list[tuple[str, ...]], width: int, height: int) -> Parts:
+    widths = _widths(table)
+    texts = ["  ".join(cell.ljust(room) for cell, room in zip(line, widths, strict=True)) for line in table]
+    hidden = len(texts) - height
+    if hidden > 0:
+        texts[height - 1 :] = [f"… {hidden + 1} more: Enter shows all"]
+    lines: list[Parts] = [[(fit(text, width), "bold" if at == 0 else "")] for at, text in enumerate(texts)]
+    return rows(lines)
 
 
 def _widths(table: list[tuple[str, ...]]) -> list[int]:

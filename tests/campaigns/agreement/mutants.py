@@ -19,7 +19,16 @@ from tempfile import TemporaryDirectory
 from types import ModuleType
 
 from tests.campaigns.agreement.compare import Key, compare
-from tests.campaigns.agreement.outputs import COMMANDS, REPORT, SCREENS, SEVERAL, TABLES, facts_of, facts_of_several
+from tests.campaigns.agreement.outputs import (
+    COMMANDS,
+    PAGE,
+    REPORT,
+    SCREENS,
+    SEVERAL,
+    TABLES,
+    facts_of,
+    facts_of_several,
+)
 from tests.campaigns.agreement.record import read_record
 from tests.campaigns.agreement.runs import Made
 
@@ -95,8 +104,16 @@ MUTANTS: Mapping[str, Mutant] = {
         (SCREENS,),
     ),
     "screen Steps: U is that of the compound": Mutant(
-        "tester.tui.stored", "{view['u_expanded'].text(one)}", "{view['u_expanded_compound'].text(one)}",
-        (SCREENS,),
+        "tester.results.conditions_table", "{table['u_expanded'].text(row)}",
+        "{table['u_expanded_compound'].text(row)}", (SCREENS,),
+    ),
+    "live: a condition that grows lacks its last repeat": Mutant(
+        "tester.results.so_far", "rows = [*_before(reader, results, row, measured), row]",
+        "rows = _before(reader, results, row, measured)", (PAGE,),
+    ),
+    "live: U is that of the compound": Mutant(
+        "tester.service.present_results", 'return table[key].as_json(row)',
+        'return table[key.replace("expanded", "expanded_compound")].as_json(row)', (PAGE,),
     ),
     "results: a workbook's numbers are rounded": Mutant(
         "tester.results.workbook", "float(written), form", "round(float(written), 1), form",

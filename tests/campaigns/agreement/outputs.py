@@ -14,7 +14,7 @@ from tests.campaigns.agreement.facts import Facts
 from tests.campaigns.agreement.read_figures import canvases, read_canvases
 from tests.campaigns.agreement.read_json import read_compare_json, read_events, read_runs_json, read_show_json, times_of
 from tests.campaigns.agreement.read_page import read_page
-from tests.campaigns.agreement.read_stored import read_stored
+from tests.campaigns.agreement.read_stored import read_live, read_stored
 from tests.campaigns.agreement.read_tables import read_table, sheets_of, sweep_facts
 from tests.campaigns.agreement.read_text import read_budget, read_compare, read_ending, read_runs, read_show
 from tests.campaigns.agreement.record import Record, read_record
@@ -42,7 +42,7 @@ def facts_of(made: Made, reports: Path, parts: Sequence[str] = PARTS) -> Iterato
         TABLES: partial(_tables, record, worn),
         REPORT: partial(_report, [record], page, "report"),
         SCREENS: partial(screens, record, worn),
-        PAGE: partial(_stored, record),
+        PAGE: partial(_stored, record, worn),
     }
     for name in parts:
         if name in readers:
@@ -89,8 +89,9 @@ def _tables(record: Record, worn: str) -> Iterator[Facts]:
             yield read_table(record, worn, name, sheets[name], f"xlsx {name}")
 
 
-def _stored(record: Record) -> Iterator[Facts]:
+def _stored(record: Record, worn: str) -> Iterator[Facts]:
     yield read_stored(record, "page in a browser")
+    yield read_live(record, worn, "live results")
 
 
 def _ending(folder: Path) -> list[str]:

@@ -1,14 +1,17 @@
-"""What the page in a browser is sent of a stored run: its questions `run` and `condition`, through JSON and back."""
+"""What the page in a browser is sent of a stored run, its questions `run` and `condition`, and what every screen is sent
+while a run is under way: through JSON and back.
+"""
 
 from __future__ import annotations
 
 import json
 from typing import Any
 
-from tests.campaigns.agreement.facts import Facts
+from tests.campaigns.agreement.facts import Facts, Subject
 from tests.campaigns.agreement.names import ASKED, MADE, MARK, MU, RIG_SECONDS, STATUS, U_COMPOUND, U_THIS, VALID
 from tests.campaigns.agreement.names import MU_MEASURED as MEASURED
 from tests.campaigns.agreement.record import Record
+from tests.campaigns.agreement.table import TableReader
 
 
 def read_stored(record: Record, output: str) -> Facts:
@@ -37,3 +40,39 @@ def read_stored(record: Record, output: str) -> Facts:
         for repeat in asked("condition", n=condition["n"])["repeats"]:
             facts.add(record.of_repeat(condition["n"], repeat["n"]), f"repeat {MEASURED}", repeat["mu"])
     return facts
+
+
+def read_live(record: Record, worn: str, output: str) -> Facts:
+    """Return the facts of the service's message ``results``: what conditions gave, and how each had grown at its end."""
+    from tester.results.conditions_table import conditions_table
+    from tester.results.run_results import results_of
+    from tester.service.present_results import PresentResults, grown_view
+    from tester.store.run_reader import RunReader
+
+    facts = Facts(output)
+    reader = TableReader(facts, record, worn)
+    shown: Any = json.loads(json.dumps(PresentResults(record.folder.parent).answer(record.folder.name)))
+    for condition in shown["conditions"]:
+        at = record.of_condition(condition["condition"])
+        facts.add(at, MU, condition["mu"])
+        facts.add(at, U_THIS, condition["u"])
+        _text(facts, reader, at, condition["text"])
+    with RunReader(record.folder) as stored:
+        results = results_of(stored)
+        table = conditions_table(results)
+        for row in table.rows:
+            if row.measured is not None:
+                for last in grown_view(stored, results, table, row).grown[-1:]:
+                    at = record.of_condition(row.info.condition)
+                    facts.add(at, MU, last.mu)
+                    facts.add(at, U_THIS, last.u)
+                    _text(facts, reader, at, last.text)
+    return facts
+
+
+def _text(facts: Facts, reader: TableReader, at: Subject, text: str) -> None:
+    """Read mu with its mark, and U, as people see them."""
+    mu, sign, u = text.partition(" ± ")
+    if sign:
+        reader.cell(at, MU, mu)
+        facts.number(at, U_THIS, u)

@@ -23,6 +23,7 @@ from tester.service.gateway import Gateway
 from tester.service.listening import listening
 from tester.service.protocol import Accepted, Event, Refused, encode
 from tester.service.queries import Queries
+from tester.service.results_view import ResultsView
 from tester.service.service_link import FROM_GATEWAY, Order, Presence
 from tester.service.state_view import PlanView, StateView
 from tests.tester.service.views import MACHINE
@@ -79,6 +80,10 @@ class FakeService:
     def plan(self, plan: PlanView | None) -> None:
         """Send a plan."""
         self.gateway.take(b"p" + to_json(plan))
+
+    def give(self, results: ResultsView) -> None:
+        """Send results, as the process that works them out does."""
+        self.gateway.results.publish(to_json(results))
 
     def _hear(self, line: bytes) -> None:
         message = FROM_GATEWAY.validate_json(line)

@@ -13,6 +13,7 @@ from textual.pilot import Pilot
 
 from tester.service.commands import Action, CheckRecipe, ListRuns, Query, ShowPlan
 from tester.service.queries import Queries
+from tester.service.results_view import ResultsView
 from tester.service.state_view import PlanView, StateView
 from tester.tui.app import TesterApp
 from tester.tui.host import TuiOptions
@@ -86,11 +87,16 @@ class Stage:
             await asyncio.sleep(0)
         raise AssertionError(f"{what}: never\n{self.text()}")
 
-    async def show(self, view: StateView, plan: PlanView | None = None) -> None:
+    async def show(
+        self, view: StateView, plan: PlanView | None = None, results: ResultsView | None = None
+    ) -> None:
         """Have the service send a state, and wait until the screen has it."""
         if plan is not None:
             self.fake.plan(plan)
             await self.until(lambda: self.app.scene.plan == plan, "the plan arrives")
+        if results is not None:
+            self.fake.give(results)
+            await self.until(lambda: self.app.scene.results == results, "the results arrive")
         self.fake.show(view)
         await self.until(lambda: self.app.scene.state == view, "the state arrives")
         await self.pilot.pause()

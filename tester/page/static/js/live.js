@@ -1,7 +1,7 @@
 // Live: the coefficient as it grows, the machine with its values, trends, steps, events.
 
 import { button, column, h, panel, put, say } from "./dom.js";
-import { hms, inWords, local, muText, number, sign, spell, withU } from "./format.js";
+import { hms, inWords, local, muText, number, sign, spell } from "./format.js";
 import { RigDrawing } from "./drawing.js";
 import { eventList, stepList } from "./steps.js";
 import { Trends } from "./trends.js";
@@ -65,18 +65,18 @@ export class Live {
         scene.plan?.first,
         scene.plan?.steps,
         Math.round((state?.progress.step_left_s ?? 0) / 5),
-        this.app.liveVersion,
+        scene.given,
       ]),
       () =>
         put(
           this.steps,
-          stepList(state ? scene.plan : null, state?.progress ?? null, this.app.record?.conditions ?? []),
+          stepList(state ? scene.plan : null, state?.progress ?? null, scene.given),
         ),
     );
     this.#once("events", `${scene.life} ${scene.events.at(-1)?.seq}`, () =>
       put(this.events, eventList(scene.events)),
     );
-    if (changed.has("event") || changed.has("hello")) this.#ask();
+    if (changed.has("event") || changed.has("hello") || changed.has("live")) this.#ask();
   }
 
   #once(name, key, draw) {
@@ -89,24 +89,9 @@ export class Live {
     const at = state?.progress;
     const value = state?.values.find((one) => one.key === this.app.scene.machine.plots[0]?.key) ?? null;
     const running = state?.run && state.run.exit === null;
-    const found = running ? this.condition : null;
-    say(
-      this.mu,
-      found && typeof found.mu === "number"
-        ? `µ ${withU(found)}`
-        : value && value.key === "friction"
-          ? `µ ${number(value.value)}`
-          : "µ –",
-    );
-    say(
-      this.muNote,
-      found && typeof found.mu === "number"
-        ? `${sign(found.state)[0]} ${found.text}: ${sign(found.state)[1]}, ` +
-            `${found.repeats} of ${found.asked} repeats. U: 95 %`
-        : state
-          ? "the momentary value; the condition has none yet"
-          : "unknown",
-    );
+    const [mu, words] = this.#value(running, value);
+    say(this.mu, `µ ${mu}`);
+    say(this.muNote, state ? words : "unknown");
     const lines = !state
       ? [["State", this.app.link.trouble]]
       : [
@@ -143,6 +128,33 @@ export class Live {
     this.share.value = at?.share ?? 0;
   }
 
+  /**
+   * Return the coefficient and where it comes from: the condition as it grows, else the last that has ended, else the
+   * momentary value.
+   */
+  #value(running, value) {
+    const given = running ? this.app.scene.given : null;
+    const growing = given?.growing;
+    if (growing) {
+      const last = growing.grown.at(-1);
+      const repeat = growing.open
+        ? `repeat ${growing.open.repeat} so far: ${number(growing.open.mu)} over ${growing.open.revolutions} rev`
+        : "";
+      if (last)
+        return [
+          last.text,
+          `${growing.words}: after ${last.repeats} of ${growing.asked} repeats. U: 95 %${repeat ? `; ${repeat}` : ""}`,
+        ];
+      if (repeat) return [number(growing.open.mu), `${growing.words}: ${repeat}; no U yet`];
+    }
+    const over = given?.conditions.filter((one) => one.over && one.mu !== null).at(-1);
+    if (over && !growing) return [over.text, `the last condition's. U: 95 %`];
+    return [
+      value?.key === "friction" ? number(value.value) : number(null),
+      "the momentary value; the condition has none yet",
+    ];
+  }
+
   #hand(state) {
     const { orders, link, scene } = this.app;
     const holder = state?.clients.controller ?? "";
@@ -175,42 +187,28 @@ export class Live {
   }
 
   async #ask() {
-    const run = this.app.record;
-    const found =
-      run?.conditions.find((one) => one.state === "running") ??
-      run?.conditions.filter((one) => typeof one.mu === "number").at(-1);
-    if (!found) {
+    const growing = this.app.scene.given?.growing;
+    const n = growing?.condition ?? this.app.scene.given?.conditions.filter((one) => one.over).at(-1)?.condition;
+    if (!n || !this.app.record) {
       this.condition = null;
       return;
     }
-    const more = await this.app.quiet("condition", { run: run.run, n: found.n });
-    const last = more?.so_far?.at(-1);
-    const grown = { mu: last?.mu ?? more?.mu ?? null, u: last?.u ?? more?.u ?? null, mu_text: "", u_text: "" };
-    const so = typeof found.mu === "number" ? found : grown;
-    this.condition = { ...found, ...so, so_far: more?.so_far, list: more?.repeats ?? [] };
+    const more = await this.app.quiet("condition", { run: this.app.record.run, n });
+    if (more) this.condition = { n, repeats: more.repeats };
   }
 
   #growth() {
-    const found = this.condition;
-    const list = found?.list ?? [];
-    this.#once("growth", JSON.stringify([found?.text, list, found?.so_far]), () => {
+    const given = this.app.scene.given;
+    const grown = given?.growing?.condition === this.condition?.n ? (given?.growing?.grown ?? []) : [];
+    const list = this.condition?.repeats ?? [];
+    this.#once("growth", JSON.stringify([this.condition?.n, list, grown]), () => {
+      this.growth.node.hidden = !list.length;
       if (!list.length) {
-        this.growth.node.hidden = true;
         put(this.repeats, h("p", { class: "none", text: "No repeat is finished yet." }));
         return;
       }
-      this.growth.node.hidden = false;
-      const counted = list.filter(
-        (one) => typeof one.mu === "number" && (one.state === "done" || one.state === "valid"),
-      );
-      let sum = 0;
-      const mean =
-        found.so_far?.map((one) => ({ x: one.n, y: one.mu, u: one.u })) ??
-        counted.map((one, index) => ({ x: one.n, y: (sum += one.mu) / (index + 1), u: null }));
-      if (!found.so_far && mean.length && typeof found.mu === "number")
-        mean[mean.length - 1] = { ...mean.at(-1), y: found.mu, u: found.u };
       this.growth.show([
-        { name: "mean so far", points: mean },
+        { name: "mean so far", points: grown.map((one) => ({ x: one.repeats, y: one.mu, u: one.u })) },
         { name: "repeats", points: list.map((one) => ({ x: one.n, y: one.mu, u: null })) },
       ]);
       put(

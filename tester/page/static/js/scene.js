@@ -14,6 +14,7 @@ export class Scene {
     this.state = null;
     this.plan = null;
     this.queue = null;
+    this.results = null;
     this.events = [];
     this.client = 0;
     this.life = "";
@@ -35,6 +36,7 @@ export class Scene {
         this.state = message.state;
         this.plan = message.plan;
         this.queue = message.queue ?? null;
+        this.results = message.results ?? null;
         this.trend = message.trend.slice(-ROWS);
         message.events.forEach((event) => this.#event(event));
         break;
@@ -49,6 +51,9 @@ export class Scene {
       case "plan":
         this.plan = message.plan;
         break;
+      case "results":
+        this.results = message.results;
+        break;
       case "queue":
         this.queue = message.queue;
         break;
@@ -58,6 +63,11 @@ export class Scene {
       default:
     }
     return message.type;
+  }
+
+  /** The results of the run that the state names; null where they are of another, or not known. */
+  get given() {
+    return this.results && this.results.run === this.state?.run?.name ? this.results : null;
   }
 
   #row(row) {

@@ -1,7 +1,7 @@
 // The steps around the present one: what each gave, how long it took or still takes. And the newest events.
 
 import { h, put } from "./dom.js";
-import { hms, spell, withU } from "./format.js";
+import { hms, spell } from "./format.js";
 
 const SIGNS = { done: "✓", now: "▶", later: "·" };
 /** Events that are listed at once. */
@@ -11,21 +11,22 @@ const LISTED = 60;
  * Return the list of a plan's steps.
  * @param {Object|null} plan PlanView
  * @param {Object|null} progress ProgressView
- * @param {Object[]} conditions of the run, for what a step gave
+ * @param {Object|null} given ResultsView, for what a step gave
  * @returns {HTMLElement}
  */
-export function stepList(plan, progress, conditions) {
+export function stepList(plan, progress, given) {
   if (!plan || !plan.steps.length) return h("p", { class: "none", text: "No plan." });
-  const gave = gaveOf(plan.steps, conditions, progress?.over ?? 0);
+  const gave = new Map((given?.conditions ?? []).map((one) => [one.condition, one]));
   const rows = plan.steps.map((step) => {
-    const found = gave.get(step.number);
+    const found = step.condition && step.state !== "later" ? gave.get(step.condition) : null;
+    const grown = given?.growing?.condition === step.condition ? given.growing.grown.at(-1) : null;
     const took =
       step.state === "done"
         ? `took ${spell(step.measured_s)}`
         : step.state === "now"
           ? `${spell(progress?.step_left_s)} left`
           : `${spell(step.expected_s)} expected`;
-    const result = found && step.state !== "later" ? withU(found) : "";
+    const result = step.state === "done" ? found?.text : grown?.text;
     return h(
       "li",
       { class: `step ${step.state}`, "aria-current": step.state === "now" ? "step" : null },
@@ -35,7 +36,7 @@ export function stepList(plan, progress, conditions) {
         { class: "what" },
         `${step.number}  ${step.title}`,
         result ? h("strong", { class: "gave", text: result }) : null,
-        found?.state === "doubtful" ? h("span", { class: "doubt", text: ` ? ${found.doubt}` }) : null,
+        found?.over && found.doubt ? h("span", { class: "doubt", text: ` ? ${found.doubt}` }) : null,
       ),
       h("span", { class: "time", text: took }),
     );
@@ -74,15 +75,4 @@ export function eventList(events) {
         ),
       ),
   );
-}
-
-/**
- * Return what the listed steps gave, by step number: the conditions that are over, counted back from the present step.
- *
- * A step's title leaves out what it shares with the step before; its place in the plan is what identifies it.
- */
-function gaveOf(steps, conditions, count) {
-  const over = conditions.filter((one) => one.state !== "planned" && one.state !== "running").slice(0, count);
-  const done = steps.filter((step) => step.kind === "condition" && step.state === "done");
-  return new Map(done.reverse().map((step, index) => [step.number, over[over.length - 1 - index]]));
 }

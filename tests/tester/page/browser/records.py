@@ -97,7 +97,6 @@ def condition(n: int, mu: float, text: str = "") -> dict[str, Any]:
             }
             for i in range(3)
         ],
-        "so_far": [{"n": i + 1, "mu": mu + 0.004 * (i - 2) / 2, "u": 0.03 / (i + 1)} for i in range(3)],
     }  # fmt: skip
 
 
