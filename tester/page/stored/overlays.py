@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from math import hypot, isfinite, nan
+from math import hypot, isfinite
 from typing import Any, Final
 
 from tester.base.axes import Axis, condition_words
@@ -12,28 +12,25 @@ from tester.page.stored.run_cache import QuestionError
 from tester.results.columns import unit_of
 from tester.results.compared import Pair, pairs
 from tester.results.measured_tables import repeats_table
+from tester.results.repeats_compared import ALONG, HOW, Compared, compared_along, place_of
 from tester.results.run_results import RunResults
 from tester.results.table_rows import TableRow
+from tester.store.records import Travel
 from tester.store.run_reader import RunReader
 
 MOST: Final = 6
 """Runs in one picture: as many as there are colours that three kinds of colour-blind people tell apart."""
-ALONG: Final = {"repeat": ("repeat", ""), "time": ("rig time", "s"), "sliding": ("sliding", "m")}
-"""What repeats may be aligned on, with title and unit."""
 
 
 def overlay_page(runs: Sequence[tuple[RunReader, RunResults]], against: str) -> dict[str, Any]:
-    """Return one to six runs against an axis of their conditions, or repeat by repeat. Raises QuestionError."""
+    """Return one to six runs against an axis of their conditions, or repeat by repeat; ``how``: where they are
+    compared, in words. Raises QuestionError.
+    """
     if not 1 <= len(runs) <= MOST:
         raise QuestionError(f"runs: expected 1 to {MOST}")
-    if against in ALONG:
-        title, unit = ALONG[against]
-        return {
-            "against": {"key": against, "title": title, "unit": unit},
-            "runs": [{"run": r.run.info.name, "points": _repeats(reader, r, against)} for reader, r in runs],
-            "difference": [], "ratio": [],
-        }  # fmt: skip
     results = [found for _, found in runs]
+    if against in ALONG:
+        return _along(runs, against)
     axis = _axis(results, against)
     first = results[0]
     matched = [(one, list(pairs(first, one))) for one in results[1:]]
@@ -48,19 +45,56 @@ def overlay_page(runs: Sequence[tuple[RunReader, RunResults]], against: str) -> 
             {"run": one.run.info.name, "points": [p for pair in found if (p := _ratio(pair, axis))]}
             for one, found in matched
         ],
+        "how": "Compared condition by condition, at the same setting.",
     }  # fmt: skip
+
+
+def _along(runs: Sequence[tuple[RunReader, RunResults]], along: str) -> dict[str, Any]:
+    """Return the repeats of runs along a word of ``ALONG``. Raises QuestionError for runs of different kinds."""
+    _one_kind([found for _, found in runs])
+    title, unit = ALONG[along]
+    travels = [reader.travels() for reader, _ in runs]
+    first = runs[0][1]
+    compared = [
+        (one.run.info.name, list(compared_along(list(pairs(first, one)), along, (travels[0], of))))
+        for (_, one), of in zip(runs[1:], travels[1:], strict=True)
+    ]
+    return {
+        "against": {"key": along, "title": title, "unit": unit},
+        "runs": [
+            {"run": one.run.info.name, "points": _repeats(one, along, of)}
+            for (_, one), of in zip(runs, travels, strict=True)
+        ],
+        "difference": [
+            {"run": run, "points": [_beside(one, one.found.value, one.found.expanded) for one in found]}
+            for run, found in compared
+        ],
+        "ratio": [
+            {"run": run, "points": [_beside(one, one.ratio, one.ratio_u) for one in found]}
+            for run, found in compared
+        ],
+        "how": f"{HOW[along]} U: of the scatter within the repeats.",
+    }
+
+
+def _beside(one: Compared, y: float, u: float) -> dict[str, Any]:
+    return {"x": one.x, "y": finite(y), "u": finite(u), "label": one.label}
 
 
 def _axis(results: Sequence[RunResults], name: str) -> Axis:
     """Return the axis of a name, that all runs have. Raises QuestionError."""
-    kinds = {one.run.info.kind for one in results}
-    if len(kinds) > 1:
-        raise QuestionError(f"runs: of different kinds of rigs: {', '.join(sorted(kinds))}")
+    _one_kind(results)
     for axis in results[0].axes:
         if axis.name == name and all(name in one.axes.places for one in results):
             return axis
     known = ", ".join([*(axis.name for axis in results[0].axes), *ALONG])
     raise QuestionError(f"against: no axis {name!r} of all these runs (expected one of {known})")
+
+
+def _one_kind(results: Sequence[RunResults]) -> None:
+    kinds = {one.run.info.kind for one in results}
+    if len(kinds) > 1:
+        raise QuestionError(f"runs: of different kinds of rigs: {', '.join(sorted(kinds))}")
 
 
 def _point(row: TableRow, axis: Axis) -> dict[str, Any]:
@@ -97,18 +131,13 @@ def _compared(pair: Pair, axis: Axis, y: float, u: float) -> dict[str, Any]:
     return {"x": axis.of(setpoint), "y": y, "u": finite(u), "label": condition_words(setpoint)}
 
 
-def _repeats(reader: RunReader, results: RunResults, along: str) -> list[Any]:
+def _repeats(results: RunResults, along: str, travels: dict[int, Travel]) -> list[Any]:
     """Return the committed repeats of a run along their number, rig time or the sliding of their piece."""
-    table, travels = repeats_table(results), reader.travels()
     points: list[Any] = []
-    for row in table.rows:
-        travel = travels.get(row.repeat.key)
-        x = {
-            "repeat": float(row.repeat.repeat), "time": row.result.started_s,
-            "sliding": travel.piece_m if travel is not None else nan,
-        }[along]  # fmt: skip
+    for row in repeats_table(results).rows:
+        place = place_of(row.repeat, along, travels.get(row.repeat.key))
         points.append({
-            "x": finite(x), "mu": finite(row.result.mu_resultant), "u": finite(row.result.uncertainty),
+            "x": finite(place.x), "mu": finite(place.mu), "u": finite(place.expanded),
             "label": f"{condition_words(row.measured.info.setpoint)}, repeat {row.repeat.repeat}",
         })  # fmt: skip
     return points

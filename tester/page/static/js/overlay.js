@@ -134,7 +134,7 @@ export class Overlay {
     say(
       this.note,
       `${names.length} runs, ${count} coefficients. ` +
-        "Each run has a colour, a dash and a marker of its own; bars are U.",
+        `Each run has a colour, a dash and a marker of its own; bars are U. ${this.found.how ?? ""}`,
     );
   }
 

@@ -124,6 +124,22 @@ def test_repeats_are_aligned_on_number_time_or_sliding(along: str, runs: Path, r
     assert places == (made if along == "repeat" else sorted(places)) and len(places) == len(made)
 
 
+@pytest.mark.parametrize("along", ["repeat", "time", "sliding"])
+def test_along_repeats_a_run_differs_from_its_twin_by_what_was_changed(along: str, own: Path) -> None:
+    twin = Path(shutil.copytree(own, own.parent / "twin"))
+    with sqlite3.connect(twin / "run.db") as store:
+        store.execute("UPDATE repeat SET mu_resultant = mu_resultant * 1.1 WHERE condition = 1")
+    store.close()
+    page = ask(own.parent, "overlay", runs=[own.name, twin.name], against=along)
+    differences, ratios = page["difference"][0]["points"], page["ratio"][0]["points"]
+    first, second = (p["label"] for p in (differences[0], differences[-1]))
+    assert first != second and all(p["u"] > 0.0 for p in differences) and page["how"]
+    assert {round(p["y"], 9) for p in ratios if p["label"] == first} == {1.1}
+    assert {round(p["y"], 9) for p in ratios if p["label"] == second} == {1.0}
+    mus = [p["mu"] for p in page["runs"][0]["points"]]
+    assert differences[0]["y"] == pytest.approx(0.1 * mus[0])
+
+
 def test_an_exclusion_is_on_record_with_the_page_that_asked(own: Path) -> None:
     before = ask(own.parent, "run", run=own.name)["conditions"][0]["mu"]
     ask(own.parent, "exclude", run=own.name, n=1, repeat=2, reason="debris")
