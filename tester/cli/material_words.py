@@ -91,14 +91,29 @@ def _facts(material: Loaded) -> dict[str, object]:
 
 
 def _of_moduli(loaded: LoadedCompound) -> Iterable[str]:
-    """Yield the facts of measured moduli, and the maxima over the frequency at 20 degC."""
+    """Yield the facts of moduli, and their maxima over the frequency at 20 degC."""
     from tester.inputs.materials.sweep_facts import fact_words, sweep_facts
 
     if loaded.table is not None:
         for label, words in fact_words(sweep_facts(loaded.table)):
             yield f"{label:{WIDE}}{words}"
     if loaded.model.moduli is not None and loaded.model.moduli.constant is None:
+        yield from _of_formula(loaded)
         yield from _over_frequency(loaded)
+
+
+def _of_formula(loaded: LoadedCompound) -> Iterable[str]:
+    from tester.inputs.materials.formula_facts import formula_facts, formula_words
+    from tester.inputs.materials.library import MissingModuliError, rubber_of
+
+    if loaded.table is not None:
+        return
+    try:
+        facts = formula_facts(rubber_of(loaded))
+    except (MissingModuliError, ValueError):
+        return  # the maxima over the frequency state the reason
+    for label, words in formula_words(facts) if facts is not None else ():
+        yield f"{label:{WIDE}}{words}"
 
 
 def _over_frequency(loaded: LoadedCompound) -> Iterable[str]:
