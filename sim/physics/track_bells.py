@@ -8,7 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Mapping
 from collections.abc import Set as AbstractSet
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from types import MappingProxyType
 from typing import Annotated, Final
 
@@ -39,8 +39,8 @@ class TrackRubber(WlfBellParameters):
     loss_factor: Annotated[float, "Hz"] = 11.615  # of its maximum at t_ref, which with grit places hysteresis
     adhesion: Annotated[float, "1"] = 1.7  # [A] of two_bells, above mu_0 on a smooth surface
     hysteresis: Annotated[float, "1"] = 1.6  # [A] of two_bells, above mu_0 on an abrasive
-    adhesion_width: Annotated[float, "1"] = 0.8  # [A] decades from the maximum to 1/e of it: both are seen apart
-    hysteresis_width: Annotated[float, "1"] = 0.8  # [A]
+    adhesion_width: Annotated[float, "1"] = 0.7  # [A] decades from the maximum to 1/e of it: both are seen apart
+    hysteresis_width: Annotated[float, "1"] = 0.7  # [A]
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
@@ -62,15 +62,35 @@ class TrackSurface:
         refuse(self, {"adhesion", "hysteresis"})
 
 
+_SBR: Final = TrackRubber()
+_INR: Final = TrackRubber(
+    t_ref=-20.0, v_ref=2.753e-3, mu_max=2.36, width=2.6,
+    loss_factor=18.353, hysteresis=1.86, hysteresis_width=0.60,
+)  # fmt: skip
+_ABR: Final = TrackRubber(
+    t_ref=16.0, v_ref=2.285e-3, mu_max=2.23, width=2.8,
+    loss_factor=15.233, hysteresis=1.73, hysteresis_width=0.65,
+)  # fmt: skip
+_BUTYL: Final = TrackRubber(
+    t_ref=-23.0, v_ref=1.058e-3, width=3.2,
+    loss_factor=7.054, hysteresis=1.53, hysteresis_width=0.74,
+)  # fmt: skip
 RUBBERS: Final[Mapping[str, TrackRubber]] = MappingProxyType({
-    "SBR": TrackRubber(),  # Tg = -53 degC [A]
-    "NR": TrackRubber(t_ref=-20.0),  # Tg = -70 degC [A]
-    "NBR": TrackRubber(t_ref=25.0),  # Tg = -25 degC [A]
-    "ABR": TrackRubber(t_ref=16.0),  # Tg = -34 degC, as in the compound's file, like those below
-    "INR": TrackRubber(t_ref=-20.0),  # Tg = -70 degC
-    "butyl": TrackRubber(t_ref=-23.0),  # Tg = -73 degC
+    "SBR": _SBR,  # Tg = -53 degC [A]
+    "NR": _INR,  # Tg = -70 degC [A], as INR
+    "NBR": replace(_ABR, t_ref=25.0),  # Tg = -25 degC [A], else as ABR
+    "ABR": _ABR,  # Tg = -34 degC, as in the compound's file, like those below
+    "INR": _INR,  # Tg = -70 degC
+    "butyl": _BUTYL,  # Tg = -73 degC
 })
-"""Rubbers by their names in recipes; they differ only in their glass transition [A]."""
+"""Rubbers by their names in recipes.
+
+Each has the places of its file's moduli: at t_ref the loss modulus is greatest at the same frequency for all [A]; the
+loss factor at a lower one, the broader its relaxation is (``b`` in the file). Heights of hysteresis are in the
+proportions that paper S, Eq 1, gives for these moduli on silicon carbide; its width and that of ``wlf_bell`` go with
+1 / b [A]. Adhesion is the same for all: on smooth tracks gum rubbers have one maximum of similar shape and about the
+same height (doi 10.1201/9781420007183-26, abstract). The shift has the same constants for all (paper S, section 4).
+"""
 _SMOOTH: Final = TrackSurface(adhesion=1.0, hysteresis=0.0)
 SURFACES: Final[Mapping[str, TrackSurface]] = MappingProxyType({
     "silicon carbide": TrackSurface(),

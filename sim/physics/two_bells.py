@@ -31,8 +31,8 @@ class TwoBellsParameters:
     mu_0: Annotated[float, "1"] = 0.5  # [A] far from both maxima
     adhesion: Annotated[float, "1"] = 0.85  # [A] above mu_0, at the slower maximum
     hysteresis: Annotated[float, "1"] = 1.6  # [A] above mu_0, at the faster one
-    adhesion_width: Annotated[float, "1"] = 0.8  # [A] decades from the maximum to 1/e of it
-    hysteresis_width: Annotated[float, "1"] = 0.8  # [A]
+    adhesion_width: Annotated[float, "1"] = 0.7  # [A] decades from the maximum to 1/e of it
+    hysteresis_width: Annotated[float, "1"] = 0.7  # [A]
     v_adhesion: Annotated[float, "m/s"] = 2.2e-5  # speeds of the maxima at t_ref
     v_hysteresis: Annotated[float, "m/s"] = 1.74e-3
     t_ref: Annotated[float, "degC"] = -3.0  # Tg + 50 K

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import tomllib
+from itertools import pairwise
 from math import exp, log10, pi
 from pathlib import Path
 
@@ -14,10 +15,12 @@ import recipes
 from sim.physics import laws
 from sim.physics.laws import LawSetting
 from sim.physics.loss_maxima import loss_maxima
+from sim.physics.moduli import FractionalZener
 from sim.physics.persson import PerssonLaw
 from sim.physics.roughness import SelfAffine, TabulatedSpectrum
 from sim.physics.track_bells import RUBBERS, SURFACES
 from tester.base.validation import editor_text
+from tester.inputs.materials.formula_facts import formula_facts
 from tester.inputs.materials.library import Library
 from tester.inputs.materials.material_schema import CompoundModel, SurfaceModel
 
@@ -124,6 +127,52 @@ def test_rubbers_of_the_simulated_track_lose_most_where_their_file_does(name: st
     of_modulus_hz, of_factor_hz = loss_maxima(LIBRARY.rubber(name).modulus, RUBBERS[name].t_ref)
     assert RUBBERS[name].loss_modulus == pytest.approx(of_modulus_hz, rel=1e-3)
     assert RUBBERS[name].loss_factor == pytest.approx(of_factor_hz, rel=1e-3)
+
+
+@pytest.mark.parametrize("name", list(RUBBERS))
+def test_widths_and_hysteresis_of_the_simulated_track_go_with_the_moduli(name: str) -> None:
+    own, like = LIBRARY.rubber(name).modulus, LIBRARY.rubber("SBR").modulus
+    assert isinstance(own, FractionalZener) and isinstance(like, FractionalZener)
+    broader = like.exponent / own.exponent
+    rubber, sbr = RUBBERS[name], RUBBERS["SBR"]
+    assert rubber.hysteresis_width == pytest.approx(broader * sbr.hysteresis_width, abs=0.006)
+    assert rubber.width == pytest.approx(broader * sbr.width, abs=0.06)
+    assert rubber.v_ref == pytest.approx(1e-6 * SURFACES["silicon carbide"].grit * rubber.loss_factor, rel=2e-3)
+    heights = [highest_hysteresis(one) for one in (name, "SBR")]
+    assert rubber.hysteresis / sbr.hysteresis == pytest.approx(heights[0] / heights[1], rel=0.01)
+
+
+def highest_hysteresis(name: str) -> float:
+    """Return the greatest coefficient of hysteresis on silicon carbide by paper S, Eq 1, at 1 bar."""
+    spectrum = LIBRARY.surface("silicon carbide").spectrum
+    assert spectrum is not None
+    law, celsius = PerssonLaw(LIBRARY.rubber(name).modulus, 0.5, spectrum), RUBBERS[name].t_ref + 23.0
+    return max(law.contact(celsius, 1e5, v).mu for v in np.logspace(-2.5, -0.5, 21).tolist())
+
+
+def test_grosch_s_four_rubbers_differ_in_every_fact_of_a_dma() -> None:
+    found = {name: formula_facts(LIBRARY.rubber(name)) for name in ("SBR", "ABR", "INR", "butyl")}
+    facts = [one for one in found.values() if one is not None]
+    assert len(facts) == 4
+    for what in ("rubber_pa", "peak_c", "peak", "decade_k"):
+        values = sorted(getattr(one, what) for one in facts)
+        assert all(b > a * (1.0 + 0.01 * (a > 0.0)) for a, b in pairwise(values)), (what, values)
+    assert len({one.glass_pa / one.rubber_pa for one in facts}) == 3
+
+
+def test_butyl_is_soft_and_relaxes_most_broadly() -> None:
+    soft = min(("SBR", "ABR", "INR", "butyl"), key=lambda name: abs(LIBRARY.rubber(name).modulus.complex_pa(
+        np.array([1e-6]), 20.0)[0]))  # fmt: skip
+    broad = max(("SBR", "ABR", "INR", "butyl"), key=half_width)
+    assert (soft, broad) == ("butyl", "butyl")
+
+
+def half_width(name: str) -> float:
+    """Return the decades over which tan delta is above half of its maximum."""
+    rates = np.logspace(-8, 16, 2401)
+    modulus = LIBRARY.rubber(name).modulus.complex_pa(rates, RUBBERS[name].t_ref)
+    tan = modulus.imag / modulus.real
+    return float(np.sum(tan > 0.5 * np.max(tan))) * 0.01
 
 
 def test_the_grit_of_the_simulated_abrasive_is_the_longest_wave_of_its_file() -> None:

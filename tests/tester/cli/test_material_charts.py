@@ -112,3 +112,10 @@ def test_a_surface_has_its_spectrum_its_points_and_its_two_waves() -> None:
 def test_a_surface_of_waves_alone_has_nothing_to_draw() -> None:
     with pytest.raises(ValueError, match="road has two waves and no spectrum"):
         surface_chart(LIBRARY.surface("road"), None)
+
+
+def test_the_four_rubbers_of_grosch_are_drawn_with_curves_of_their_own() -> None:
+    tan = [np.array(compound_chart(LIBRARY.rubber(name), (), 20.0).panels[1].series[0].y)
+           for name in ("SBR", "ABR", "INR", "butyl")]  # fmt: skip
+    heights = sorted(float(np.max(one)) for one in tan)
+    assert heights == pytest.approx([1.14, 1.24, 1.47, 1.77], abs=0.01)

@@ -59,6 +59,15 @@ def test_show_says_what_a_file_holds_and_its_hash(folder: Path, capsys: pytest.C
     assert f"sha256   {one['sha256']}" in out and one["content"]["shear"]["tau_s0"] == "12000 Pa"
 
 
+def test_show_tells_the_four_rubbers_of_grosch_apart(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    shown: list[dict[str, object]] = []
+    for name in ("SBR", "ABR", "INR", "butyl"):
+        assert invoke(["materials", "show", name, "--json"]) == 0
+        shown.append(json.loads(capsys.readouterr().out)[0]["facts"])
+    for label in ("tan peak", "E0", "shift", "at 20 °C"):
+        assert len({str(facts[label]) for facts in shown}) == 4, label
+
+
 def test_show_of_an_unknown_name_is_a_usage_error(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["materials", "show", "tred"]) == 2
     assert 'did you mean "tread"?' in capsys.readouterr().err
