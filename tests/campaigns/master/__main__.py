@@ -129,6 +129,8 @@ def main(arguments: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser("python -m tests.campaigns.master", description=__doc__)
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"simulated runs of each sort ({SEEDS})")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")
+    text = f"whole runs of the recipe for Grosch's rules ({rules.RUNS})"
+    parser.add_argument("--runs", type=int, default=rules.RUNS, metavar="N", help=text)
     parts = ("synthetic", "twin", "rules")
     parser.add_argument("--only", choices=parts, help="sets that are made up, simulated runs, or Grosch's rules")
     parser.add_argument("--sample", action="store_true", help="few synthetic sets, one simulated run")
@@ -149,7 +151,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         for figure in twin(1 if read.sample else read.seeds, read.jobs, sample=read.sample):
             tell(figure)
     if read.only in (None, "rules"):
-        runs = 0 if read.sample else min(rules.RUNS, read.seeds)
+        runs = 0 if read.sample else min(read.runs, read.seeds)
         for figure in rules.figures(rules.SAMPLE_SEEDS if read.sample else read.seeds, runs, read.jobs):
             tell(figure)
     print("every figure met" if not missed else f"{missed} missed")

@@ -50,6 +50,27 @@ def one_track(text: str, surface: str = "silicon carbide", interface: str = "dry
     return clean.replace("[wavy glass, silicon carbide]", surface)
 
 
+FOUR_RUBBERS = ("SBR", "ABR", "INR", "butyl")
+"""Grosch's."""
+RECIPE_C = tuple(-40.0 + 10.0 * i for i in range(11))
+"""Temperatures of the packaged recipe grosch, degC."""
+LOWEST_C = {"ABR": -15.0}
+"""Lowest temperature of a rubber where it is not the recipe's: at -40 degC ABR is a glass, and Grosch slid it from
+-15 degC (paper S, Fig 3)."""
+
+
+def temperatures_of(compound: str) -> tuple[float, ...]:
+    """Return the eleven temperatures at which a rubber slides, degC."""
+    return tuple(LOWEST_C.get(compound, RECIPE_C[0]) + at - RECIPE_C[0] for at in RECIPE_C)
+
+
+def with_rubber(text: str, compound: str) -> str:
+    """Return the text of the packaged recipe grosch with a rubber, and the rubber's temperatures for all of its own."""
+    assert "compound: SBR" in text
+    stated, own = (", ".join(f"{at:g} degC" for at in row) for row in (RECIPE_C, temperatures_of(compound)))
+    return text.replace("compound: SBR", f"compound: {compound}").replace(stated, own)
+
+
 @dataclass
 class Kept(NullRecorder):
     """Keeps results, trips, warnings and events."""
