@@ -71,6 +71,8 @@ class Reference:
     u_share: float
     counterface_m: float
     piece_m: float
+    surface: str = ""
+    """Name of the counterface, "" of a run's only one."""
 
     @property
     def usable(self) -> bool:
@@ -91,7 +93,7 @@ class KnownScatter:
 
 @dataclass(frozen=True, slots=True)
 class CounterfaceDrift:
-    """The counterface's change of the coefficient per metre of its travel under load: d ln mu / dm and its standard
+    """One counterface's change of the coefficient per metre of its travel under load: d ln mu / dm and its standard
     uncertainty, 1/m. ``apart`` False: it includes an unknown part of the piece's change."""
 
     per_m: float
@@ -143,7 +145,7 @@ class CounterfaceDrift:
 
 
 def counterface_drift(references: Sequence[Reference], known: KnownScatter) -> CounterfaceDrift | None:
-    """Return the counterface's change from references; None with fewer than two of them, or no travel."""
+    """Return the change of one counterface from its references; None with fewer than two of them, or no travel."""
     used = [reference for reference in references if reference.usable]
     travelled = [reference.counterface_m for reference in used]
     if len(used) < 2 or max(travelled) - min(travelled) <= 0.0:
@@ -250,13 +252,20 @@ class ControlPoint:
 
 @dataclass(frozen=True, slots=True)
 class ControlChart:
-    """References of one compound in order. The centre is the first; ``low`` and ``high`` limit the coefficient."""
+    """References of one compound on one counterface in order. The centre is the first; ``low`` and ``high`` limit the
+    coefficient."""
 
     compound: str
     centre: float
     low: float
     high: float
     points: tuple[ControlPoint, ...]
+    surface: str = ""
+
+    @property
+    def name(self) -> str:
+        """Return compound and counterface, for people."""
+        return f"{self.compound} on {self.surface}" if self.surface else self.compound
 
     @property
     def kept(self) -> bool:
@@ -265,14 +274,14 @@ class ControlChart:
 
 
 def control_charts(references: Sequence[Reference], known: KnownScatter) -> tuple[ControlChart, ...]:
-    """Return a chart for each compound with a reference that has a value.
+    """Return a chart for each compound and counterface with a reference that has a value.
 
     The known deviation is that of the repeats, and where pieces were changed, that from piece to piece as well.
     """
     coverage = t_quantile(0.5 + 0.5 * CONFIDENCE, known.repeats_df)
     charts: list[ControlChart] = []
-    for compound in dict.fromkeys(reference.compound for reference in references):
-        listed = [reference for reference in references if reference.compound == compound]
+    for compound, surface in dict.fromkeys((reference.compound, reference.surface) for reference in references):
+        listed = [one for one in references if (one.compound, one.surface) == (compound, surface)]
         used = [reference for reference in listed if reference.mu > 0.0 and isfinite(reference.u_share)]
         if not used:
             continue  # a chart needs a first value as its centre
@@ -291,35 +300,41 @@ def control_charts(references: Sequence[Reference], known: KnownScatter) -> tupl
             )
             for reference in listed
         ]
-        charts.append(ControlChart(compound, centre, low, high, tuple(points)))
+        charts.append(ControlChart(compound, centre, low, high, tuple(points), surface))
     return tuple(charts)
 
 
 @dataclass(frozen=True, slots=True)
 class ReferenceWatch:
-    """Result of a run's references: themselves, the counterface's drift, a control chart for each compound."""
+    """Result of a run's references: themselves, the drift of each counterface by its name (None: fewer than two of its
+    references have a value), a control chart for each compound on each counterface."""
 
     references: tuple[Reference, ...]
-    drift: CounterfaceDrift | None
+    drifts: Mapping[str, CounterfaceDrift | None]
     charts: tuple[ControlChart, ...]
 
     def lines(self, worn: str) -> Iterator[str]:
-        """Yield lines of text: the counterface's drift, then each compound's control limits and the references outside.
+        """Yield lines of text: each counterface's drift, each compound's control limits and the references outside.
 
         ``worn``: the kind's word for the part that wears.
         """
-        if self.drift is not None:
-            yield self.drift.sentence(worn)
-        else:
-            yield "counterface: fewer than two references have a value, nothing is known of it"
+        for surface, drift in self.drifts.items():
+            on = f"on {surface}: " if surface else ""
+            if drift is not None:
+                yield f"{on}{drift.sentence(worn)}"
+            else:
+                yield f"{on}counterface: fewer than two references have a value, nothing is known of it"
         for chart in self.charts:
             outside = [f"{point.number}" for point in chart.points if isfinite(point.mu) and not point.within]
-            limits = f"references of {chart.compound}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
+            limits = f"references of {chart.name}: limits {coefficient(chart.low)} to {coefficient(chart.high)}"
             yield f"{limits}; outside: {', '.join(outside)}" if outside else f"{limits}; all inside"
 
 
 def doubted(charts: Sequence[ControlChart], conditions: Sequence[int]) -> frozenset[int]:
-    """Return the conditions between a reference out of its limits and the last good one before it."""
+    """Return the conditions between a reference out of its limits and the last good one before it.
+
+    Charts and conditions are those of one counterface.
+    """
     points = sorted((point for chart in charts for point in chart.points), key=lambda reference: reference.condition)
     doubtful: set[int] = set()
     good = 0

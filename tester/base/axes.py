@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from operator import itemgetter
-from typing import NamedTuple, TypeAlias, cast
+from typing import Final, NamedTuple, TypeAlias, cast
 
 AxisValue: TypeAlias = float | str
 """Value of an axis: a number in the axis's ``recipe_unit``, or a text."""
@@ -115,6 +115,16 @@ class Setpoint(NamedTuple):
         for name, value in values.items():
             changed[self.axes.places[name]] = value
         return Setpoint(self.compound if compound is None else compound, tuple(changed), self.axes)
+
+
+SURFACE: Final = "surface"
+"""Name of the axis of a kind that changes the surface under the rubber."""
+
+
+def surface_of(held: Setpoint) -> str:
+    """Return the surface that a setpoint names, "" where it names none, or in a record without such an axis."""
+    return str(held.value(SURFACE)) if SURFACE in held.axes.places else ""
+
 
 
 class Axes:

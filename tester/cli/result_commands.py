@@ -143,22 +143,25 @@ def _summary(name: str, results: RunResults) -> dict[str, Json]:
 
 
 def _reference(watch: ReferenceWatch) -> Json:
-    """Return what the reference conditions show: the drift of the counterface, and the control charts."""
-    drift, drifted = watch.drift, None
-    if drift is not None:
+    """Return what the reference conditions show: the drift of each counterface, and the control charts."""
+    drifts: list[Json] = []
+    for surface, drift in watch.drifts.items():
+        if drift is None:
+            continue
         change, low, high = map(finite, drift.changed_percent(drift.over_m))
-        drifted = {
+        drifts.append({
+            "surface": surface,
             "told_apart": drift.apart,
             "change_percent": change,
             "change_low_percent": low,
             "change_high_percent": high,
             **fields(drift, "over_m references pieces"),
-        }
+        })  # fmt: skip
     charts: list[Json] = []
     for chart in watch.charts:
         points = [fields(point, " ".join(asdict(point))) for point in chart.points]
-        charts.append({**fields(chart, "compound centre low high"), "points": [*points]})
-    return {"drift": drifted, "charts": charts}
+        charts.append({**fields(chart, "compound surface centre low high"), "points": [*points]})
+    return {"drifts": drifts, "charts": charts}
 
 
 def _conditions(results: RunResults) -> Iterator[Json]:

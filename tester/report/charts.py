@@ -311,8 +311,11 @@ def _window(repeat: RepeatResult) -> Mark:
 
 
 def control_chart(charts: Sequence[ControlChart]) -> Chart:
-    """Return the charts of the references, one for each compound, over their order; those out of limits are crosses."""
-    panels = tuple(ChartPanel(chart.compound if len(charts) > 1 else "", _series(chart)) for chart in charts)
+    """Return the charts of the references, one for each compound and counterface, over their order.
+
+    Those out of limits are crosses.
+    """
+    panels = tuple(ChartPanel(chart.name if len(charts) > 1 else "", _series(chart)) for chart in charts)
     return Chart(
         "control",
         "reference condition in the order in which it was measured",

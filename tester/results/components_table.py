@@ -7,8 +7,7 @@ from typing import Final, NamedTuple, TypeAlias
 
 from tester.analysis.components import ByFilm, PartValue, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope, slope_of_pairs
-from tester.base.axes import AxisValue
-from tester.inputs.recipe.recipe_schema import SURFACE
+from tester.base.axes import AxisValue, surface_of
 from tester.results.run_results import RunResults
 from tester.results.table_rows import Measured
 
@@ -36,8 +35,7 @@ class FilmPair(NamedTuple):
     @property
     def surface(self) -> str:
         """Return the surface that the recipe's grid names; "" for the recipe's abrasive."""
-        held = self.film.info.setpoint
-        return str(held.value(SURFACE)) if SURFACE in held.axes.places else ""
+        return surface_of(self.film.info.setpoint)
 
 
 class SharesMean(NamedTuple):

@@ -23,7 +23,7 @@ from tester.store.records import ConditionInfo
 
 @dataclass(frozen=True, slots=True)
 class ReferenceRow:
-    """A reference condition with its point on its compound's chart; ``drift`` is the whole run's."""
+    """A reference condition with its point on its compound's chart; ``drift`` is its counterface's."""
 
     row: TableRow
     reference: Reference
@@ -50,7 +50,7 @@ def references_table(results: RunResults) -> Table[ReferenceRow]:
     """Return a row for each reference condition, in the order of measurement.
 
     ``mu`` is at the nominal temperature, ``repeatability_expanded`` its expanded repeatability (95 %). The result for
-    the counterface is the same in every row.
+    a counterface is the same in every row of it.
     """
     piece = Column[ReferenceRow](piece_key(results.worn), results.worn, lambda row: row.reference.piece or None)
     axes: Iterator[Column[ReferenceRow]] = (axis_column(axis, lambda row: row.row.info) for axis in results.axes)
@@ -66,7 +66,8 @@ def _reference_rows(results: RunResults) -> Iterator[ReferenceRow]:
     rows = {row.info.condition: row for row in results.references}
     for reference in watch.references:
         yield ReferenceRow(
-            rows[reference.condition], reference, *points.get(reference.condition, (None, None)), watch.drift
+            rows[reference.condition], reference, *points.get(reference.condition, (None, None)),
+            watch.drifts.get(reference.surface),
         )
 
 

@@ -16,7 +16,7 @@ from tester.analysis.results import NAN, SoakCheck
 from tester.analysis.ring_errors import RingRun
 from tester.analysis.schemes import Misalignment, misalignment
 from tester.analysis.wear_rate import TOUCH, ConditionWear, WearCheck, WearRate, condition_wear, wear_rate
-from tester.base.axes import Axes
+from tester.base.axes import Axes, surface_of
 from tester.base.quantities import Quantities
 from tester.results.settings_compared import RepeatedSetting, settings_of
 from tester.results.surroundings import SurroundingsOf
@@ -143,8 +143,7 @@ def results_of(reader: RunReader) -> RunResults:
     watch = None
     if references:
         watch = surroundings.watch(references, reserved=RESERVED in run.info.metadata)
-        ordinary = [condition.info.condition for condition in conditions if not _watches(condition, run)]
-        doubts = doubted(watch.charts, ordinary)
+        doubts = _doubted(watch, [condition for condition in conditions if not _watches(condition, run)])
         flags = dict.fromkeys(doubts, OUT_OF_LIMITS) | {c.info.condition: REFERENCE for c in references}
         conditions = [_flagged(c, flags[c.info.condition]) if c.info.condition in flags else c for c in conditions]
     conditions, settings = _budgeted(conditions, surroundings)
@@ -175,6 +174,14 @@ def surroundings_of(
     pool = pooled([condition.result for condition in conditions])
     ordinary = [(c.info.setpoint, c.result) for c in conditions if not _watches(c, run)]
     return SurroundingsOf(reader, run, pieces, checks, pool, ordinary)
+
+
+def _doubted(watch: ReferenceWatch, conditions: Sequence[Measured]) -> Iterator[int]:
+    """Yield the conditions that the references on their surface leave in doubt."""
+    for surface in watch.drifts:
+        charts = [chart for chart in watch.charts if chart.surface == surface]
+        own = [one.info.condition for one in conditions if surface_of(one.info.setpoint) == surface]
+        yield from doubted(charts, own)
 
 
 def _watches(measured: Measured | TableRow, run: StoredRun) -> bool:

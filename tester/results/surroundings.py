@@ -22,7 +22,7 @@ from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings
 from tester.analysis.uncertainty import Pool
 from tester.analysis.wear_rate import WearCheck, Worn
-from tester.base.axes import AxisValue, Setpoint
+from tester.base.axes import AxisValue, Setpoint, surface_of
 from tester.results.table_rows import Measured
 from tester.store.record_schema import StoreError
 from tester.store.records import ConditionInfo, PieceInfo, StoredRepeat, StoredRun, Travel
@@ -57,7 +57,7 @@ class SurroundingsOf:
         self._known = run.info.known
         self._worn = _worn(pieces, checks)
         self._pool = pool
-        self._drift: CounterfaceDrift | None = None
+        self._drifts: dict[str, CounterfaceDrift | None] = {}
         quantities = reader.quantities()
         role = quantities.roles.temperature
         screen = quantities[role].screen if role else None
@@ -74,18 +74,21 @@ class SurroundingsOf:
         """Return the sources of uncertainty of a condition, or of replicates of one."""
         warmth = self._warmth(info.setpoint, repeats, result.measured.temperature)
         travel_m = self._travel(repeats).counterface_m
-        return Surroundings(self.terms, self._pool, warmth, self._size(repeats), self._drift, travel_m)
+        drift = self._drifts.get(surface_of(info.setpoint))
+        return Surroundings(self.terms, self._pool, warmth, self._size(repeats), drift, travel_m)
 
     def watch(self, references: Sequence[Measured], *, reserved: bool) -> ReferenceWatch:
-        """Return the result of the reference conditions, and count the counterface's drift among the sources from now
+        """Return the result of the reference conditions, and count the counterfaces' drift among the sources from now
         on; ``reserved``: a piece is reserved for them.
         """
         in_order = sorted(references, key=lambda condition: condition.info.condition)
         listed = [self._reference(number, condition) for number, condition in enumerate(in_order, start=1)]
         between = sum(term.standard for term in self.terms if term.acts is Acts.PIECE)
         known = KnownScatter(float(self._pool.df) if self._pool.df else inf, between, reserved)
-        self._drift = counterface_drift(listed, known)
-        return ReferenceWatch(tuple(listed), self._drift, control_charts(listed, known))
+        for surface in dict.fromkeys(reference.surface for reference in listed):
+            own = [reference for reference in listed if reference.surface == surface]
+            self._drifts[surface] = counterface_drift(own, known)
+        return ReferenceWatch(tuple(listed), self._drifts, control_charts(listed, known))
 
     def _reference(self, number: int, condition: Measured) -> Reference:
         """Return a reference condition for the analysis, its coefficient at the nominal temperature."""
@@ -102,6 +105,7 @@ class SurroundingsOf:
             self._share() / sqrt(max(result.n_valid, 1)),
             travel.counterface_m,
             travel.piece_m,
+            surface_of(info.setpoint),
         )
 
     def _share(self) -> float:

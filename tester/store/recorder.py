@@ -6,6 +6,7 @@ scan's thread calls the verbs.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterable, Mapping
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ from tester.store.kind_rows import axis_rows, budget_rows, setpoint_columns
 from tester.store.record_schema import TIMES
 from tester.store.records import (
     NAN,
+    SURFACE_EVENT,
     Calibration,
     Change,
     ConditionInfo,
@@ -292,6 +294,12 @@ class Recorder:
         self._events += 1
         event = StoredEvent(self._events, t_s, self._utc(), kind, severity, text, data)
         self._write(self._row("event", event), urgent=severity in URGENT_SEVERITIES)
+
+    def surface_changed(self, t_s: float, surface: str, travels_m: Mapping[str, float]) -> None:
+        """Record that a surface was put under the rubber, with the travel of each surface under load so far, m."""
+        data = json.dumps({"on": surface, "travels_m": dict(travels_m)})
+        before = travels_m.get(surface, 0.0)
+        self.event(t_s, SURFACE_EVENT, f"{surface} is on, after {before:.0f} m under load", data=data)
 
     def prompt(self, t_s: float, text: str) -> int:
         """Store a prompt and return its number."""

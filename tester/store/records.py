@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import Final
 
 from tester.analysis.kelvin import KnownSlope
 from tester.analysis.results import NOT_JUDGED, ConditionStatus, Judgement, RepeatResult
@@ -263,9 +264,13 @@ class StoredRepeat:
         return self.condition, self.repeat, self.attempt
 
 
+SURFACE_EVENT: Final = "surface"
+"""Kind of the events that record a change of the surface."""
+
+
 @dataclass(frozen=True, slots=True)
 class Travel:
-    """The counterface's travel under load since the run began, and a piece's sliding, in m."""
+    """The travel under load, since the run began, of the counterface that is on, and a piece's sliding, in m."""
 
     counterface_m: float
     piece_m: float

@@ -90,7 +90,7 @@ def resume_point(reader: RunReader) -> ResumePoint:
         finished=run.status == WENT_THROUGH,
         origin_s=run.rig_seconds if isfinite(run.rig_seconds) else 0.0,
         stand=Stand(
-            frozenset(ended), frozenset(repeats), tuple(_pieces(reader.pieces(), repeats)), reader.counterface_m()
+            frozenset(ended), frozenset(repeats), tuple(_pieces(reader.pieces(), repeats)), reader.counterfaces_m()
         ),
         conditions=open_,
         reference_tare=_reference(reader),

@@ -5,6 +5,7 @@ If a run is still being written, or was interrupted, everything committed so far
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
@@ -27,6 +28,7 @@ from tester.store.kind_rows import axes_of, setpoint_of, term_of
 from tester.store.record_file import RecordFile
 from tester.store.record_schema import NotBegunError, StoreError
 from tester.store.records import (
+    SURFACE_EVENT,
     Calibration,
     Change,
     ConditionInfo,
@@ -123,10 +125,28 @@ class RunReader(RecordFile):
             slid.setdefault(whole(row, "piece"), []).append(number(row, "piece_m"))
         return slid
 
-    def counterface_m(self) -> float:
-        """Return the counterface's travel under load since the run began, m; 0 if none is recorded."""
-        rows = self.rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")
-        return next(number(row, "travel_m") for row in rows)
+    def counterfaces_m(self) -> dict[str, float]:
+        """Return the travel of each counterface under load since the run began, m, by its name; "" is a run's only one.
+
+        Raises StoreError for a change of the surface that cannot be read.
+        """
+        changes = self.event_data(SURFACE_EVENT)
+        if not changes:
+            rows = self.rows("SELECT coalesce(max(counterface_m), 0.0) AS travel_m FROM travel")
+            return {"": next(number(row, "travel_m") for row in rows)}
+        try:
+            last = json.loads(changes[-1])
+            on, travels_m = str(last["on"]), {str(name): float(m) for name, m in last["travels_m"].items()}
+        except (ValueError, KeyError, TypeError, AttributeError) as error:
+            raise StoreError(f"{self.path}: a change of the surface cannot be read: {error}") from error
+        # The state of the piece used last is newer than the change: it was recorded with it, and after every repeat.
+        rows = self.rows(
+            "SELECT travel.counterface_m AS travel_m FROM travel JOIN piece ON piece.piece = travel.piece"
+            " WHERE travel.repeat_id = 0 ORDER BY piece.updated_s DESC, piece.piece DESC LIMIT 1"
+        )
+        for row in rows:
+            travels_m[on] = max(travels_m.get(on, 0.0), number(row, "travel_m"))
+        return travels_m
 
     def materials(self) -> list[StoredMaterial]:
         """Return the files of compounds and surfaces, each before the files to which it refers."""

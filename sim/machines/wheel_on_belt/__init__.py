@@ -45,6 +45,7 @@ VERBS = (
     ),
     Verb("again", "mount_again", "mount an earlier wheel again: cold diameter, sliding distance", _WORN),
     Verb("same", "keep", "the same, unless that wheel is on already", _WORN),
+    Verb("cover", "cover", "put a belt of this name on, clean", (Argument("surface", TEXT),)),
     Verb("belt", "belt_travelled", "wear a fresh belt by its travel under load", (Argument("travel_m", "m"),)),
     Verb(
         "weight", "hang", "hang a weight on the load cell; zeros remove it",

@@ -7,11 +7,19 @@ its own steps. Every public attribute is the truth; the ``measured`` methods ret
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from math import cos, exp, inf, pi, sin, sqrt
 from typing import Final
 
 from sim.machines.wheel_on_belt.heat_flow import SAME_STEP_S, HeatFlow
-from sim.machines.wheel_on_belt.rubbing import Rubbing, WheelSetting, condition_factor, run_factor, wheel_factor
+from sim.machines.wheel_on_belt.rubbing import (
+    Rubbing,
+    WheelSetting,
+    belt_named,
+    condition_factor,
+    run_factor,
+    wheel_factor,
+)
 from sim.machines.wheel_on_belt.sensors import LoadCellSensor
 from sim.noise import NormalStream, uniforms
 from sim.physics.contact import ContactModel, Relaxation, Warmth
@@ -28,7 +36,7 @@ class Plant(Rubbing):
     """The physics of one rig, with a wheel after ``install``. Deep-copyable; all randomness is from one seed."""
 
     __slots__ = (
-        "_cold_factor", "_dt", "_flow", "_place", "_relaxation", "_rotating_above", "_seed", "_stiffness",
+        "_cold_factor", "_dt", "_flow", "_grips", "_place", "_relaxation", "_rotating_above", "_seed", "_stiffness",
         "_swing_mm", "_warm_c", "_warmth", "belt_speed", "hub_sensor", "hung", "ir", "load_cell", "size",
         "wheel_angle_rev", "wheel_speed",
     )  # fmt: skip
@@ -38,6 +46,8 @@ class Plant(Rubbing):
         super().__init__(parameters, seed)
         p = parameters
         self._seed = seed
+        self._grips: dict[str, float] = {}
+        """Share of its grip that each belt had left when it was taken off."""
         contact = ContactModel(p.contact)
         self._stiffness = (contact.factor, contact.exponent, contact.damping_n_s_mm)
         self._cold_factor = contact.factor
@@ -86,12 +96,11 @@ class Plant(Rubbing):
 
     def _mount(self, diameter_mm: float, sliding_m: float) -> None:
         """Mount a wheel at ambient temperature, out of contact."""
-        wheel = self.parameters.wheel
         self._flow.state.set_rubber(self.parameters.ambient)
         self._flow.restart()
         self.surface_c = self.parameters.ambient
         self.cold_mm = self.diameter_mm = self.size * diameter_mm
-        self._touch_mm = self.parameters.contact.gap + 0.5 * (wheel.outer_diameter - self.diameter_mm)
+        self._touch_mm = self._place_of_touch_mm()
         self._warm_c = inf  # heat effects of the last wheel do not count
         if self._relaxation is not None:
             self._relaxation.forget()
@@ -127,9 +136,30 @@ class Plant(Rubbing):
         self._mount(p.wheel.outer_diameter if diameter_mm is None else diameter_mm, sliding_m)
         self.wheel_factor = wheel_factor(p, self._seed, specimen, wheel)
         self.condition_factor = self.run_factor = 1.0
-        self._scatter = self.wheel_factor * self._grip
+        self._scatter = self.belt.factor * self.wheel_factor * self._grip
         self._place = (specimen, wheel)
         self._key_streams()
+
+    def cover(self, surface: str) -> None:
+        """Put a belt of this name on, at ambient temperature, with the wear that it has from before.
+
+        Raises the exceptions of ``wheel_law``, for a law that is made of the surface.
+        """
+        p = self.parameters
+        self._grips[self.belt.name] = self.belt_grip
+        self.setting = replace(self.setting, surface=surface)
+        self.belt = belt_named(p, self._seed, surface)
+        self.belt_grip = self._grips.get(surface, 1.0)
+        self.heat.belt_c = p.ambient
+        self.set_grip(self._grip)
+        if self._compound:
+            self._take(self._compound)
+            self._touch_mm = self._place_of_touch_mm()
+
+    def _place_of_touch_mm(self) -> float:
+        """Return the position of the press at which wheel and belt touch."""
+        p = self.parameters
+        return p.contact.gap + 0.5 * (p.wheel.outer_diameter - self.diameter_mm) - self.belt.thicker_mm
 
     def begin_repeat(self, condition: int, repeat: int, attempt: int, setting: WheelSetting) -> None:
         """Draw the scatter of a setting and of a repeat, and start the repeat's noise streams; all numbers 0 and up.
@@ -142,7 +172,7 @@ class Plant(Rubbing):
         place = (specimen, wheel, condition, repeat, attempt)
         self.condition_factor = condition_factor(self.parameters, self._seed, self._compound, setting)
         self.run_factor = run_factor(self.parameters, self._seed, *place)
-        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * self._grip
+        self.set_grip(self._grip)
         self._place = place
         self._key_streams()
 
@@ -170,12 +200,12 @@ class Plant(Rubbing):
         self._warm_c = rubber_c
         if not (self._warmth.matters or self.size != 1.0) or not self._compound:
             return
-        warmth, contact = self._warmth, self.parameters.contact
+        warmth = self._warmth
         _, exponent, damping = self._stiffness
         self._stiffness = (self._cold_factor * warmth.stiffness_share(rubber_c), exponent, damping)
         grown_mm = warmth.growth_mm(rubber_c, self._flow.state.hub_c, self.cold_mm)
         self.diameter_mm = self.cold_mm + 2.0 * grown_mm
-        self._touch_mm = contact.gap + 0.5 * (self.parameters.wheel.outer_diameter - self.diameter_mm)
+        self._touch_mm = self._place_of_touch_mm()
 
     def advance(
         self,

@@ -346,6 +346,11 @@ class WheelRig(SimRig):
         self.plant_s = self.now_s
         self.plant.install(specimen, wheel, compound, False, diameter_mm, sliding_m)
 
+    def cover(self, surface: str) -> None:
+        """Put a belt of this name on, clean."""
+        self.plant_s = self.now_s
+        self.plant.cover(surface)
+
     def belt_travelled(self, travel_m: float) -> None:
         """Wear a fresh belt by the travel of an interrupted run under load, m; a rig that has lived on has that belt.
         """

@@ -15,12 +15,18 @@ import zlib
 from math import cos, exp, inf, pi, radians, sin
 from typing import Final, NamedTuple
 
-from sim.noise import Autoregressive, NormalStream, StickSlip, normal
-from sim.physics.laws import NO_SETTING, LawSetting
+from sim.noise import Autoregressive, NormalStream, StickSlip, normal, uniforms
+from sim.physics.laws import NO_SETTING, LawSetting, OfMaterials, find
 from sim.physics.parameters import SimParameters
 from sim.physics.slip import traction_direction
 from sim.physics.wheel_law import ASSUMED, WheelLaw, wheel_law
 
+PAPERS_BELT: Final = "zirconia corundum belt"
+"""The belt of the paper, on which the laws of its compounds were measured."""
+BELT_SIGMA: Final = 0.1
+"""Deviation of another belt's friction from that of the paper's, as a share, for a law that knows no surface [A]."""
+BELT_MM: Final = 0.2
+"""Greatest difference of another belt's thickness from the paper's, mm [A]."""
 _RUNNING_IN_LASTS: Final = 37.0
 """Number of running-in distances after which its factor is 1 to the last bit: exp(-37) is less than 2^-53."""
 
@@ -32,7 +38,7 @@ class Rubbing:
     __slots__ = (
         "_arm_m", "_blunts", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_excess", "_friction",
         "_grip", "_law", "_noise", "_rubber", "_run_in_m", "_run_in_scale_m", "_scatter", "_sideslip_deg", "_sin",
-        "_stick_slip", "_touch_mm", "_wear_per_width", "_within", "belt_grip", "cold_mm", "condition_factor",
+        "_stick_slip", "_touch_mm", "_wear_per_width", "_within", "belt", "belt_grip", "cold_mm", "condition_factor",
         "diameter_mm", "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "mu", "parameters", "run_factor",
         "setting", "sliding_m", "slip_m_s", "surface_c", "wheel_factor",
     )  # fmt: skip
@@ -55,6 +61,8 @@ class Rubbing:
         self._blunts = p.counterface.loss > 0.0
         self.belt_grip = 1.0
         """Share of its original grip that the belt has left; it is kept when wheels are changed."""
+        self.belt = BELT
+        """The belt that is on."""
         self._deficit_keep = 1.0
         self._sideslip_deg, self._cos, self._sin, self._cornering = 0.0, 1.0, 0.0, 1.0
         self._compound = ""
@@ -86,11 +94,12 @@ class Rubbing:
     def truth(self, temperature_c: float, load_n: float, slip_m_s: float, sideslip_deg: float) -> dict[str, float]:
         """Return the factors of the coefficient for the repeat that has begun, and the state at its begin.
 
-        ``model`` is the compound's coefficient at these setpoints. Times ``condition`` and ``wheel`` it is this wheel's
-        coefficient in this condition on the belt in its original state; times ``belt``, on the belt as it is; times
-        ``run``, this repeat's, before noise, running-in and wear.
+        ``model`` is the compound's coefficient at these setpoints on the belt that is on. Times ``condition`` and
+        ``wheel`` it is this wheel's coefficient in this condition on that belt in its original state; times ``belt``,
+        on the belt as it is; times ``run``, this repeat's, before noise, running-in and wear.
         """
         model = self._law.mu(temperature_c, load_n, slip_m_s) * self._rubber.cornering_factor(sideslip_deg)
+        model *= self.belt.factor
         return {
             "model": model,
             "condition": self.condition_factor,
@@ -104,7 +113,7 @@ class Rubbing:
     def set_grip(self, share: float) -> None:
         """Set the share of the friction that the belt transmits from now on: 1 as new, 0 torn, above 1 sharper."""
         self._grip = share
-        self._scatter = self.wheel_factor * self.condition_factor * self.run_factor * share
+        self._scatter = self.belt.factor * self.wheel_factor * self.condition_factor * self.run_factor * share
 
     def travel(self, travel_m: float, surface_c: float) -> None:
         """Let the belt travel under load, m, at a surface temperature of the rubber, degC: it goes blunt and clogs."""
@@ -165,6 +174,31 @@ class Rubbing:
     def belt_force_n(self) -> float:
         """True force on the belt along its travel, in N."""
         return self.force_x_n * self._cos - self.force_y_n * self._sin
+
+
+class Belt(NamedTuple):
+    """A belt: its friction as a factor of the paper's belt, and how much thicker it is, mm."""
+
+    name: str
+    factor: float = 1.0
+    thicker_mm: float = 0.0
+
+
+BELT: Final = Belt("")
+"""The belt of a rig whose recipe names none: it rubs as the paper's."""
+
+
+def belt_named(parameters: SimParameters, seed: int, name: str) -> Belt:
+    """Return the belt of a name: other belts than the paper's have their own friction and thickness.
+
+    A law made of materials takes friction from the surface itself.
+    """
+    if name in ("", PAPERS_BELT):
+        return Belt(name)
+    key, scatter = zlib.crc32(name.encode()), parameters.scatter
+    of_surface = isinstance(find(parameters.friction_model), OfMaterials)
+    factor = 1.0 if of_surface else exp(scatter * BELT_SIGMA * normal(seed, "belt", key))
+    return Belt(name, factor, scatter * BELT_MM * uniforms(1, seed, "belt", key)[0])
 
 
 def wheel_factor(parameters: SimParameters, seed: int, specimen: int, wheel: int) -> float:

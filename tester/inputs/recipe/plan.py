@@ -184,5 +184,5 @@ class Stand:
     begun: frozenset[int] = frozenset()
     """Conditions with a repeat begun, ended ones included."""
     mounted: tuple[Mounted, ...] = ()
-    travel_m: float = 0.0
-    """Travel of the counterface under load."""
+    travels_m: Mapping[str, float] = field(default_factory=dict[str, float])
+    """Travel of each counterface under load, by the name of the surface; "" is a run's only one."""

@@ -10,12 +10,12 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Final, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, TypeAlias, cast
 
 from pydantic import BaseModel, BeforeValidator, Field, WithJsonSchema, create_model, model_validator
 
 from tester.analysis.pressure import LOAD
-from tester.base.axes import Axes, Axis
+from tester.base.axes import SURFACE, Axes, Axis
 from tester.base.units import Quantity, UnitError, as_text, expected, parse_one_of
 from tester.base.validation import Section
 from tester.inputs.recipe.axis_lists import MAX_NAME, Listed
@@ -242,10 +242,6 @@ def _axis_field(axis: Axis) -> tuple[object, object]:
         return listed | None, None
     default = axis.recipe_default
     return listed, ... if default is None else [default]
-
-
-SURFACE: Final = "surface"
-"""Name of the axis of a kind that changes the surface under the rubber."""
 
 
 def surfaces_of(recipe: Recipe) -> list[str]:

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from typing import Final, NamedTuple
 
-from tester.base.axes import Axes, Axis, Setpoint
-from tester.inputs.recipe.recipe_schema import SURFACE
+from tester.base.axes import SURFACE, Axes, Axis, Setpoint, surface_of
 
 NAME: Final = "specimen_on_track"
 INTERFACES: Final = ("dry", "wet", "talc")
@@ -45,6 +44,5 @@ class TrackHeld(NamedTuple):
 def held_by(setpoint: Setpoint) -> TrackHeld:
     """Return the values of a setpoint by their names."""
     number = setpoint.number
-    surface = str(setpoint.value(SURFACE)) if SURFACE in setpoint.axes.places else ""  # a record of an earlier version
     interface = str(setpoint.value("interface"))
-    return TrackHeld(number("track_speed"), number("load"), number("temperature"), interface, surface)
+    return TrackHeld(number("track_speed"), number("load"), number("temperature"), interface, surface_of(setpoint))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from math import hypot, inf, isfinite, nan
 from typing import ClassVar, Final, Protocol
 
@@ -13,6 +14,7 @@ from tester.kinds.wheel_on_belt.control.interlock_inputs import InterlockInputs
 from tester.kinds.wheel_on_belt.image.process_image import Demand, Press, Readings, Setpoints
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 from tester.kinds.wheel_on_belt.interlocks.contact_force import UNLOADED_N, depth_mm
+from tester.kinds.wheel_on_belt.procedures.belts import Belts
 from tester.kinds.wheel_on_belt.procedures.gates import GATES, Gates
 from tester.kinds.wheel_on_belt.procedures.wear_estimate import PRIOR_RATE, LoadMemory, loss_per_n_m
 from tester.kinds.wheel_on_belt.procedures.wheel_life import WheelLife, wheel_of
@@ -55,6 +57,10 @@ class Attendant(Protocol):
         """Mount an earlier wheel of this run again, with its wear (mm, m)."""
         ...
 
+    def cover(self, surface: str) -> None:
+        """Put a belt of this name on, clean."""
+        ...
+
     def belt_travelled(self, travel_m: float) -> None:
         """Keep the belt of an interrupted run, with its travel under load, m."""
         ...
@@ -82,7 +88,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
 
     # Slots: CPython 3.11 looks the methods of an object with more than 30 attributes up anew in every scan.
     __slots__ = (
-        "_open_since_s", "_place_mm", "_was_in_contact", "_wear_mm3_per_n_m", "attendant", "belt_travel_m", "cell",
+        "_open_since_s", "_place_mm", "_was_in_contact", "_wear_mm3_per_n_m", "attendant", "belts", "cell",
         "contact", "gates", "heat", "observer", "quantities", "rates", "shelf", "view", "wheel",
     )  # fmt: skip
 
@@ -114,8 +120,8 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self.wheel = wheel_of(rig.geometry)
         self.shelf: dict[tuple[int, int], WheelLife] = {}
         """The wheels that were taken off: the last of each specimen and replicate."""
-        self.belt_travel_m = 0.0
-        """How far the belt has travelled under load since the run began."""
+        self.belts = Belts()
+        """The belts of the run, and how far each has travelled under load since it began."""
         self.rates: dict[str, tuple[float, float]] = {}
         """Wear rates learnt in this run by compound, mm3/(N m), with their standard uncertainties."""
         self._was_in_contact = self.contact.in_contact
@@ -137,6 +143,13 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         self._place_mm = nan
         self.readings.wheel_angle_rev = 0.0
 
+    def change_belt(self, belt: str) -> None:
+        """Use another belt from now on. Belts differ in thickness: the place of contact is that of a wheel just put on.
+        """
+        self.belts.put_on(belt)
+        if self.wheel.wheel:
+            self.put_on(replace(self.wheel, reference=None, last_check=None))
+
     def before_reading(self) -> None:
         """Update the wheel's diameters, from which speeds are computed."""
         self.wheel.show(self.readings, self.rig.wear)
@@ -148,7 +161,7 @@ class Context(BaseContext[RigConfig, Readings, Demand]):
         if r.force_z_n > CONTACT_N:
             travelled_m = r.belt_speed_m_s * self.dt
             if travelled_m > 0.0:  # also false for NaN
-                self.belt_travel_m += travelled_m
+                self.belts.travelled(travelled_m)
         if r.force_z_n > CONTACT_N and r.slip_m_s > SLIDING_M_S:
             self.wheel.slide(r.force_z_n, r.slip_m_s, self.dt, self._wear_mm3_per_n_m)
 

@@ -76,7 +76,7 @@ def carry_out(case: TwinCase) -> TwinFound:
             raise RuntimeError(" ".join(screen.messages))
         with RunReader(session.folder) as reader:
             results = results_of(reader)
-    drift = results.watch.drift if results.watch is not None else None
+    drift = next(iter(results.watch.drifts.values())) if results.watch is not None else None
     if drift is None:
         return TwinFound(case, False, "no references have a value", False, 0.0)
     return TwinFound(case, drift.apart, drift.sentence("wheel"), holds_truth(drift), drift.over_m)

@@ -87,7 +87,7 @@ def hostile(tmp_path_factory: pytest.TempPathFactory) -> str:
     writer.finish("failed", every, rig_seconds=60.0)
     writer.close()
     points = (ControlPoint(1, 1, 0.0, 0.7, 0.02, True),)
-    watch = ReferenceWatch((), None, (ControlChart(every, 0.7, 0.65, 0.75, points),))
+    watch = ReferenceWatch((), {}, (ControlChart(every, 0.7, 0.65, 0.75, points),))
     found = read_record(folder, MachineWords(every, every, every, every))
     return page(replace(found, results=replace(found.results, watch=watch)))
 

@@ -113,7 +113,9 @@ def test_a_grid_called_reference_in_a_run_without_references_is_a_grid(tmp_path:
 def test_a_reference_without_a_value_is_missing_and_leaves_the_others(tmp_path: Path) -> None:
     found = results(watched_run(tmp_path, (SHARP, [nan, nan, nan], BLUNT)))
     assert [row.info.condition for row in found.missing()] == [3] and found.valued() == 2
-    assert found.watch is not None and found.watch.drift is not None and found.watch.drift.references == 2
+    assert found.watch is not None
+    drift = found.watch.drifts[""]
+    assert drift is not None and drift.references == 2
 
 
 def test_the_end_of_a_run_says_a_sentence(tmp_path: Path) -> None:

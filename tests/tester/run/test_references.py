@@ -65,7 +65,7 @@ def resumed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float]:
             Session(options(home), Screen()).run()
     folder = next((home / "runs").iterdir())
     with RunReader(folder) as reader:
-        before_m = resume_point(reader).stand.travel_m
+        before_m = resume_point(reader).stand.travels_m[""]
     assert Session(SessionOptions(), Screen()).resume(folder, "") == 0
     return folder, before_m
 

@@ -9,15 +9,16 @@ from pathlib import Path
 from typing import ClassVar, Final
 
 from tester.analysis.terms import Term
-from tester.base.axes import Axes, AxisValue, Setpoint, condition_words, numbers
+from tester.base.axes import SURFACE, Axes, AxisValue, Setpoint, condition_words, numbers
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import show
 from tester.base.words import rough_duration
 from tester.inputs.recipe.conditions import Condition, conditions_of
 from tester.inputs.recipe.plain_recipe import Mount, SpecimenPart
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Settings, Stand, Step, fields_of
-from tester.inputs.recipe.recipe_schema import SURFACE, GridModel, MeasureModel, Recipe
+from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import axis_values
+from tester.inputs.recipe.surface_turns import in_turns, surface_problems
 from tester.inputs.recipe.time_estimate import Estimate, StepEstimate
 from tester.inputs.rig import Rig
 from tester.kinds.specimen_on_track.axes import AXES, NAME, held_by
@@ -81,12 +82,7 @@ class TrackPart(SpecimenPart):
             for key in UNUSED:
                 if isinstance(node, dict) and key in node:
                     yield tree.problem((*at, key), f"{key}: this machine slides for a way (expected distance)")
-        named = [isinstance(node, dict) and SURFACE in node for _, node in nodes[1:]]
-        if any(named) and top.get("abrasive") is not None:
-            yield tree.problem(("abrasive",), "abrasive: the grids name surfaces (expected one of both)")
-        for (at, _), names in zip(nodes[1:], named, strict=True):
-            if any(named) and not names:
-                yield tree.problem(at, "surface is missing: another grid names its own (expected one in every grid)")
+        yield from surface_problems(tree)
 
     def terms(self, rig: Rig) -> tuple[Term, ...]:
         """Return the possible errors of the measuring chain."""
@@ -146,12 +142,9 @@ class TrackPart(SpecimenPart):
         A named surface with talc has a turn of its own, on a new cover: talc does not come off.
         """
         surface, interface = AXES.places[SURFACE], AXES.places["interface"]
-        turns = dict[object, list[Condition[Settings]]]()
-        for condition in conditions:
-            named = condition.values[surface]
-            powdered = bool(named) and condition.values[interface] == "talc"
-            turns.setdefault((named, powdered), []).append(condition)
-        return list(turns.values())
+        return in_turns(conditions, lambda values: (
+            values[surface], bool(values[surface]) and values[interface] == "talc"
+        ))  # fmt: skip
 
     def before_turn(self, index: int, values: tuple[AxisValue, ...], settings: Settings, rig: Rig) -> Sequence[Step]:
         """Return the steps to a surface that the grids name, in air that a person can open the chamber to."""

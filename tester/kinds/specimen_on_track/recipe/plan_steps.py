@@ -10,6 +10,7 @@ from typing import ClassVar, Final
 
 from tester.inputs.recipe.plain_recipe import Mount
 from tester.inputs.recipe.plan import ConditionStep, Settings, Step
+from tester.inputs.recipe.surface_turns import ChangeSurface
 
 STRETCHES: Final = 10
 """Number of parts of a condition's way whose mean frictions are compared [A]."""
@@ -34,11 +35,8 @@ class MountSpecimen(Mount):
 
 
 @dataclass(frozen=True, slots=True)
-class Cover(Step):
+class Cover(ChangeSurface):
     """A person covers the track with another surface, clean and dry."""
-
-    kind: ClassVar[str] = "cover"
-    surface: str
 
     @property
     def title(self) -> str:

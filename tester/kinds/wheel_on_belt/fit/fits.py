@@ -10,7 +10,7 @@ from sim.physics.friction import MODEL_NAMES, UnknownCompoundError
 from sim.physics.slip import caveats, predict
 from tester.analysis.fit.fit_law import Sourced
 from tester.analysis.fit.fit_part import FitPart, LawPlace, PublishedTable, Subject
-from tester.base.axes import Setpoint
+from tester.base.axes import Setpoint, surface_of
 from tester.kinds.wheel_on_belt.fit.data import APPENDICES, READABLE, appendix, rows
 from tester.kinds.wheel_on_belt.fit.laws import LAWS, LOAD, SLIP
 from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
@@ -31,6 +31,11 @@ class WheelFits(FitPart):
         from tester.kinds.wheel_on_belt.fit.run_data import run_points
 
         return run_points(folder)
+
+    def subject(self, group: str) -> Subject:
+        from tester.kinds.wheel_on_belt.fit.run_data import subject_of
+
+        return subject_of(group)
 
     def published_values(self) -> Sequence[tuple[Setpoint, float]]:
         """Return the readable rows of the paper's appendices, including those with sideslip, each once."""
@@ -57,7 +62,7 @@ class WheelFits(FitPart):
         held = held_by(setpoint)
         angled = any(held.positions.values())
         at = held.temperature_c, held.load_n, abs(held.slip_velocity_m_s)
-        return None if angled else LawPlace(Subject(held.compound), *at)
+        return None if angled else LawPlace(Subject(held.compound, surface=surface_of(setpoint)), *at)
 
     def law_at(self, name: str) -> Callable[[Setpoint], float]:
         """Return a law over setpoints, NaN for compounds outside the paper; raises KeyError for an unknown law."""

@@ -16,8 +16,10 @@ from typing import Final
 from tester.analysis.fit.fit_law import FitPoint, Sourced
 from tester.analysis.master_curve.points import MasterPart, MasterPoint, MasterRun, MasterSource
 from tester.analysis.master_curve.verdict import signs_of
+from tester.base.axes import SURFACE
 from tester.kinds.wheel_on_belt.fit.data import appendix
 from tester.kinds.wheel_on_belt.fit.laws import LOAD, SLIP, TEMPERATURE
+from tester.kinds.wheel_on_belt.fit.run_data import subject_of
 
 COOL_W: Final = 1.0
 """Power of friction below which a surface is assumed to keep its temperature [A]: a slow block has less."""
@@ -57,9 +59,11 @@ def _refused(sourced: Sourced) -> MasterRun:
 
 
 def _point(point: FitPoint) -> MasterPoint:
-    held: Mapping[str, str] = {"load": f"{point.nominal[LOAD]:g} N"}
+    subject = subject_of(point.group)
+    belt = {SURFACE: subject.surface} if subject.surface else {}
+    held: Mapping[str, str] = {**belt, "load": f"{point.nominal[LOAD]:g} N"}
     return MasterPoint(
-        point.label, point.group, point.measured[SLIP], point.measured[TEMPERATURE], point.nominal[TEMPERATURE],
+        point.label, subject.compound, point.measured[SLIP], point.measured[TEMPERATURE], point.nominal[TEMPERATURE],
         point.value, MasterSource(point.source.name), held,
     )  # fmt: skip
 

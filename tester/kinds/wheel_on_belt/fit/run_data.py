@@ -8,7 +8,9 @@ from pathlib import Path
 from typing import Final
 
 from tester.analysis.fit.fit_law import Sourced
+from tester.analysis.fit.fit_part import Subject
 from tester.analysis.kelvin import CONDITION_SCATTER
+from tester.base.axes import SURFACE, surface_of
 from tester.kinds.wheel_on_belt.fit.laws import TEMPERATURE
 from tester.kinds.wheel_on_belt.image.axes import held_by
 from tester.results.fit_points import ConditionReader, Scatter, points_of
@@ -16,8 +18,10 @@ from tester.results.run_results import results_of
 from tester.results.table_rows import Measured
 from tester.store.run_reader import RunReader
 
-_KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed"})
-"""Axes that a law covers; wheel speed counts only through the slip. All other axes must be at their defaults."""
+_KNOWN = frozenset({"temperature", "load", "slip_velocity", "wheel_speed", SURFACE})
+"""Axes that a law covers: wheel speed counts only through the slip, each belt is fitted by itself. All other axes must
+be at their defaults."""
+_ON: Final = " on "
 
 _PUBLISHED: Final = "residuals of the best separable law for the data of doi 10.3390/polym16050596"
 BETWEEN_CONDITIONS: Final[Mapping[str, Scatter]] = {
@@ -36,6 +40,17 @@ def run_points(folder: Path) -> Sourced:
     """
     with RunReader(folder) as reader:
         return points_of(folder.name, results_of(reader), _READER)
+
+
+def subject_of(group: str) -> Subject:
+    """Return compound and belt of a group of conditions; the belt is "" where the grids name none."""
+    compound, _, belt = group.partition(_ON)
+    return Subject(compound, surface=belt)
+
+
+def _group(condition: Measured) -> str:
+    belt = surface_of(condition.info.setpoint)
+    return condition.info.compound + (f"{_ON}{belt}" if belt else "")
 
 
 def _refused(condition: Measured) -> str:
@@ -58,4 +73,4 @@ def _nominal(condition: Measured) -> tuple[float, float, float]:
     return held.temperature_c, held.load_n, abs(held.slip_velocity_m_s)
 
 
-_READER: Final = ConditionReader(TEMPERATURE, _nominal, _measured, _refused, BETWEEN_CONDITIONS)
+_READER: Final = ConditionReader(TEMPERATURE, _nominal, _measured, _refused, BETWEEN_CONDITIONS, _group)

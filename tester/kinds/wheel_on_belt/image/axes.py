@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import Final, NamedTuple
 
-from tester.base.axes import Axes, Axis, AxisValue, Setpoint
+from tester.base.axes import SURFACE, Axes, Axis, AxisValue, Setpoint
 
 KIND: Final = "wheel_on_belt"
 
@@ -60,13 +60,15 @@ AXES: Final = Axes(
              None, True, 3, ge=-50.0, le=200.0),
         Axis("wheel_speed", "m/s", "wheel_speed_m_s", "m/s", 1.0, "wheel_speed_m_s", "Wheel Speed /m·s⁻¹", "Wheel m/s",
              "wheel", 0.8, False, 6, ge=LEAST_SPEED_M_S, in_measure=True, limit="limits.wheel_speed"),
+        Axis(SURFACE, "1", "surface", "", 1.0, "surface", "Surface", "Surface", "on", "", False, 7),
     ),
     blocks="temperature",
 )  # fmt: skip
 """All axes in the order of display. The paper held the wheel at 0.8 m/s and without camber throughout.
 
 Slip velocity is wheel speed less belt speed at no sideslip, negative when braking; sideslip is the angle of the wheel's
-plane to the belt's travel, camber its tilt; temperature is the surface's, wheel speed the line speed.
+plane to the belt's travel, camber its tilt; temperature is the surface's, wheel speed the line speed, surface the name
+of the belt ("": the recipe's abrasive).
 """
 
 
@@ -120,6 +122,13 @@ _BY_FIELD = {axis.field: axis.name for axis in AXES}
 @lru_cache(maxsize=8)
 def _numbers_of(axes: Axes) -> Callable[[tuple[AxisValue, ...]], tuple[float, ...]]:
     return axes.numbers_of(*(_BY_FIELD[field] for field in HeldSetpoint._fields[1:-1]), *_NAMES)
+
+
+def on_belt(setpoint: Setpoint, belt: str) -> Setpoint:
+    """Return a setpoint on another belt; "": without a name of one."""
+    values = list(setpoint.values)
+    values[setpoint.axes.places[SURFACE]] = belt
+    return setpoint._replace(values=tuple(values))
 
 
 def held_by(setpoint: Setpoint) -> HeldSetpoint:

@@ -33,8 +33,8 @@ def record_state(recorder: Recorder, ctx: Context, now_s: float) -> None:
 
 
 def travel_of(ctx: Context) -> Travel:
-    """Return the belt's travel under load and the wheel's sliding distance."""
-    return Travel(ctx.belt_travel_m, ctx.wheel.sliding_m)
+    """Return the travel of the belt that is on, under load, and the wheel's sliding distance."""
+    return Travel(ctx.belts.travel_m, ctx.wheel.sliding_m)
 
 
 class WheelResults(StoredResults[Context]):

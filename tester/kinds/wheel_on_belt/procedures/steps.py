@@ -16,8 +16,9 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown, HeatUp
 from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
 from tester.kinds.wheel_on_belt.procedures.wear_estimate import DISAGREEMENTS
 from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U
-from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, ShowContact
+from tester.kinds.wheel_on_belt.procedures.wheel_steps import InstallWheel, PreGrindStep, PutBeltOn, ShowContact
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
+    ChangeBelt,
     Cool,
     Heat,
     Install,
@@ -71,6 +72,8 @@ class WheelProcedures(Procedures[Context]):
         match step:
             case Install():
                 return InstallWheel(step, self.reference_tare)
+            case ChangeBelt():
+                return PutBeltOn(step)
             case PreGrind():
                 return PreGrindStep(step, self.reference_tare)
             case Rest():
@@ -127,7 +130,7 @@ class WheelProcedures(Procedures[Context]):
     def _attended(self, follower: Step) -> Unforeseen[Context]:
         """Return the steps after a person was at the wheel."""
         # The wheel may have been off, or the belt changed: the contact is proved again first.
-        shown = self.reference_tare and not isinstance(follower, Install | PromptStep)
+        shown = self.reference_tare and not isinstance(follower, Install | PromptStep | ChangeBelt)
         # The wheel has cooled meanwhile: it is warmed before any measurement.
         surface = follower.setpoint.number("temperature") if isinstance(follower, WheelCondition) else None
         warmed = [Heat(INSERTED, surface)] if surface is not None else []

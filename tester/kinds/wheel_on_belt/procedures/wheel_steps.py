@@ -10,11 +10,12 @@ from tester.inputs.recipe.plan import Mounted
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, speeds_reached
+from tester.kinds.wheel_on_belt.procedures.on_record import record_state
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U, wheel_of
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, informs, is_due
-from tester.kinds.wheel_on_belt.recipe.plan_steps import Install, PreGrind
+from tester.kinds.wheel_on_belt.recipe.plan_steps import ChangeBelt, Install, PreGrind
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
 from tester.store.records import PieceInfo
@@ -137,6 +138,38 @@ class InstallWheel:
         )
         wheel.sliding_m = worn.sliding_m
         ctx.put_on(wheel)
+
+
+class PutBeltOn(AskAtRest):
+    """Ask a person to put another belt on, as at a change of the wheel: cool, lifted, standing, heat and drives off.
+
+    The run counts on the new belt once the question is answered, and not before.
+    """
+
+    def __init__(self, step: ChangeBelt) -> None:
+        """The step of the plan."""
+        more = ", if it is not on already" if step.again else ""
+        super().__init__(f"put belt {step.surface} on, clean and without dust{more}")
+        self.belt = step.surface
+        self.on = False
+
+    def step(self, ctx: Context) -> bool:
+        """Done when the belt is on and the wheel is free."""
+        done = super().step(ctx)
+        if self.answered and not self.on:
+            self.on = True
+            self._put_on(ctx)
+        return done
+
+    def _put_on(self, ctx: Context) -> None:
+        ctx.change_belt(self.belt)
+        ctx.attendant.cover(self.belt)
+        travel_m = ctx.belts.travel_m
+        if travel_m > 0.0:
+            ctx.attendant.belt_travelled(travel_m)
+        ctx.journal.surface_changed(ctx.now, self.belt, ctx.belts.travels_m)
+        if ctx.wheel.wheel:
+            record_state(ctx.journal, ctx, ctx.now)
 
 
 class Grind:

@@ -7,14 +7,15 @@ from collections.abc import Iterator
 
 from tester.analysis.difference import pieces_needed
 from tester.analysis.reference import EVERY, RESERVED
-from tester.base.axes import condition_words
+from tester.base.axes import condition_words, surface_of
 from tester.base.words import listed_some, rough_duration
 from tester.inputs.recipe.plan import ConditionStep, Plan, PromptStep, Step, fields_of
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.time_estimate import HISTORIC_PERCENT, Estimate, StepEstimate
 from tester.kinds.wheel_on_belt.budget import BETWEEN_PERCENT
-from tester.kinds.wheel_on_belt.image.axes import held_by
+from tester.kinds.wheel_on_belt.image.axes import held_by, on_belt
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
+    ChangeBelt,
     Cool,
     Install,
     PreGrind,
@@ -52,6 +53,8 @@ class WheelDescription(RecipePart):
                 return f"cool the hub below {step.hub_below_c:g} degC"
             case ToolPrompt():
                 return f"ask, with a tool: {step.text}"
+            case ChangeBelt():
+                return f"ask: {step.title}"
             case PromptStep():
                 return f"ask: {step.text}"
             case _:
@@ -157,7 +160,9 @@ def _references(plan: WheelPlan) -> Iterator[str]:
     """Yield how often the reference condition is measured, and its setpoint, which may contain defaults."""
     first = next((step for step in plan.conditions() if step.reference), None)
     if first is not None:
-        held = condition_words(first.setpoint, compound=False)
+        belts = {surface_of(step.setpoint) for step in plan.conditions() if step.reference}
+        setpoint = first.setpoint if len(belts) == 1 else on_belt(first.setpoint, "")
+        held = condition_words(setpoint, compound=False) + ("" if len(belts) == 1 else " on each belt")
         reserved = plan.metadata.get(RESERVED)
         on = f"on a wheel reserved for it ({reserved})" if reserved else "on whichever wheel is on"
         every = f"after every {plan.metadata[EVERY]} conditions"

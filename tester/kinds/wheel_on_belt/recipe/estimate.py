@@ -22,6 +22,7 @@ from tester.kinds.wheel_on_belt.recipe.constants import CONSTANTS, EstimateConst
 from tester.kinds.wheel_on_belt.recipe.cost import ROLLING_M_S, ConditionCosts
 from tester.kinds.wheel_on_belt.recipe.order import Before, Body, OrderCosts
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
+    ChangeBelt,
     Cool,
     Heat,
     Install,
@@ -108,7 +109,7 @@ class WheelEstimator(Estimator):
                 last = step
                 result.append(estimate._replace(seconds=estimate.seconds + self._checks_s(plan, place, step)))
                 continue
-            prompted = isinstance(step, PromptStep)
+            prompted = isinstance(step, PromptStep | ChangeBelt)
             if last is not None:
                 body_c = self.body.steady_c(last.setpoint.number("temperature"))
                 last = None
@@ -119,7 +120,7 @@ class WheelEstimator(Estimator):
             else:
                 if isinstance(step, Install):
                     compound = step.compound
-                cold_rubber = isinstance(step, Install) or (cold_rubber and isinstance(step, PromptStep))
+                cold_rubber = isinstance(step, Install) or (cold_rubber and prompted)
                 if isinstance(step, Heat):
                     before.heat(self.body.surface_c(body_c))
                 estimate, body_c = self._preparation(step, compound, body_c)
@@ -313,7 +314,7 @@ class WheelEstimator(Estimator):
                 return StepEstimate(seconds), min(body_c, step.hub_below_c)
             case ToolPrompt():
                 return self._asking(body_c, Cool(step.index, self.tool_hub_c))
-            case PromptStep():
+            case PromptStep() | ChangeBelt():
                 return self._asking(body_c, TOUCH)
             case WheelCondition():
                 return self.condition(step), body_c

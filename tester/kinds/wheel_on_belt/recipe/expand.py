@@ -1,7 +1,8 @@
 """Expansion of a recipe into a plan: ordered conditions (tester.inputs.recipe.conditions), each with its wheel.
 
 Wheels are changed only between conditions: before a condition with more predicted wear than is left, and at a change
-of temperature if that needs no further wheel.
+of temperature if that needs no further wheel. Each replicate goes through its belts one after the other
+(``tester.inputs.recipe.surface_turns``); where belt and wheel change together, the wheel is ground in on the new belt.
 """
 
 from __future__ import annotations
@@ -16,9 +17,13 @@ from tester.base.axes import Setpoint
 from tester.inputs.recipe.conditions import BlockValue, Condition, conditions_of, metadata_of, ordered
 from tester.inputs.recipe.plan import PromptStep, Specimen
 from tester.inputs.recipe.specimen_section import specimens_of
+from tester.inputs.recipe.surface_turns import in_turns, surface_among
 from tester.inputs.recipe.time_estimate import StepEstimate
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.plan_steps import (
+    ChangeBelt,
+    Cool,
+    Heat,
     PreGrind,
     PreparePolicy,
     Rest,
@@ -100,6 +105,9 @@ class _Expansion:
         self.count = 0
         self.at_c: float | None = None
         """Surface temperature of the mounted wheel after the last steps; None for a new wheel."""
+        self.belt_among = surface_among(recipe.axes)
+        self.belt = ""
+        """The belt that the grids name and that is on; "" before the first."""
         self.every_condition = _prompts(recipe, "condition")
         self.every_temperature = _prompts(recipe, "temperature")
 
@@ -115,7 +123,7 @@ class _Expansion:
             for replicate in range(1, recipe.replicates + 1):
                 self._replicate(specimen, replicate, setpoints, costs)
         if self.references.reserved is not None and self.count:
-            self._on_reserved(self.references.reserved)
+            self._on_reserved(self.references.reserved, self.belt)
         return WheelPlan(
             name=recipe.recipe,
             kind=recipe.kind,
@@ -134,75 +142,121 @@ class _Expansion:
         self, specimen: Specimen, replicate: int, setpoints: list[Setpoint], costs: list[StepEstimate]
     ) -> None:
         """Add all conditions of one replicate, on as many wheels as they need; both lists are indexed by row."""
-        blocks = ordered(self.conditions, self.held, self.recipe.order, specimen.index, replicate)
+        turns = in_turns(self.conditions, self.belt_among)
+        blocks = [
+            block
+            for turn in turns
+            for block in ordered(turn, self.held, self.recipe.order, specimen.index, replicate)
+        ]
         watch = self.references.on_wheels
         if watch is not None:
-            blocks = self.references.inserted(blocks, specimen.index, replicate)
-            setpoint = Setpoint(specimen.compound, watch.values, self.recipe.axes)
-            # Row 0 is the reference, the last entry of both lists (index -1).
-            setpoints, costs = [*setpoints, setpoint], [*costs, self.estimator.costs.of(setpoint, watch.settings)]
+            blocks = self.references.inserted(blocks, specimen.index, replicate, self.belt)
+            # Row 0 is the reference, the last entry of the list (index -1).
+            reference = Setpoint(specimen.compound, watch.values, self.recipe.axes)
+            costs = [*costs, self.estimator.costs.of(reference, watch.settings)]
         losses = [[costs[condition.row - 1].loss_mm for condition in block] for block in blocks]
-        wheel = self._new_wheel(specimen, replicate, None)
+        first = self.belt_among(blocks[0][0].values) if blocks else ""
+        wheel = self._new_wheel(specimen, replicate, None, first)
         changes = change_points(losses, wheel.loss_mm, self.recipe.wheel.replace_after)
         for block, points in zip(blocks, changes, strict=True):
+            belt = self.belt_among(block[0].values)
             if 0 in points:
-                wheel = self._new_wheel(specimen, replicate, None)
+                wheel = self._new_wheel(specimen, replicate, None, belt)
+            elif belt != self.belt:
+                self._other_belt(belt, wheel, specimen)
             self._add(self.every_temperature)
             warm = False
             for position, condition in enumerate(block):
                 held_c = self.held(condition.values)
                 if position and position in points:
-                    wheel = self._new_wheel(specimen, replicate, held_c)
+                    wheel = self._new_wheel(specimen, replicate, held_c, belt)
                 elif self.references.due_on_reserved():
                     self._exchanged(wheel, specimen, held_c)
                 elif not warm or held_c != self.at_c:
                     self._add(self.references.heating(self.at_c, held_c))
                 warm, self.at_c = True, held_c
                 if not condition.row:
-                    self._measure(wheel, condition, setpoints[-1], costs[-1], reference=True)
+                    watched = Setpoint(specimen.compound, condition.values, self.recipe.axes)
+                    self._measure(wheel, condition, watched, costs[-1], reference=True)
                     continue
                 if self.every_condition:
                     self._add(self.every_condition)
                 self._measure(wheel, condition, setpoints[condition.row - 1], costs[condition.row - 1])
 
-    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None) -> WheelWear:
-        if self.references.reserved is not None and self.conditions:
-            self._on_reserved(self.references.reserved)
-        return self._mount(specimen, replicate, heat_c)
+    def _new_wheel(self, specimen: Specimen, replicate: int, heat_c: float | None, belt: str) -> WheelWear:
+        reserved = self.references.reserved if self.conditions else None
+        if reserved is not None:
+            self._on_reserved(reserved, self.belt or belt)
+            if belt != self.belt:
+                self._reference_after_change(reserved, belt)
+        return self._mount(specimen, replicate, heat_c, belt)
 
-    def _mount(self, specimen: Specimen, replicate: int, heat_c: float | None) -> WheelWear:
+    def _mount(self, specimen: Specimen, replicate: int, heat_c: float | None, belt: str) -> WheelWear:
         number = len(self.wheels) + 1
         self.at_c = heat_c
-        self._add(prepare_wheel(self.prepare, specimen, replicate, number, cool=number > 1, heat_c=heat_c))
+        change = ChangeBelt(INSERTED, belt) if belt != self.belt else None
+        self.belt = belt
+        steps = prepare_wheel(
+            self.prepare, specimen, replicate, number, cool=number > 1, heat_c=heat_c, belt=change
+        )
+        self._add(steps)
         grind = self.prepare.pre_grind
         ground = self.estimator.pre_grind(grind, specimen.compound) if grind else StepEstimate(0.0)
         wheel = WheelWear(number, specimen.index, replicate, 0, ground.loss_mm, ground.sliding_m)
         self.wheels.append(wheel)
         return wheel
 
-    def _on_reserved(self, reserved: ReservedWheel) -> None:
-        """Measure the reference condition on its reserved wheel."""
-        condition, specimen = self.references.condition, self.references.specimens[0]
-        assert condition is not None
-        held_c = self.held(condition.values)
+    def _other_belt(self, belt: str, wheel: WheelWear, specimen: Specimen) -> None:
+        """Change the belt under a wheel; a reserved wheel measures the reference before and after it."""
+        reserved = self.references.reserved
+        if reserved is None:
+            self._put_on(belt)
+            return
+        self._on_reserved(reserved, self.belt)
+        self._reference_after_change(reserved, belt)
+        held_c = self.held(self.references.on(belt).values)
+        self._add(step for step in self._mounting_again(wheel, specimen, held_c) if not isinstance(step, Heat))
+
+    def _put_on(self, belt: str) -> None:
+        """Ask for a belt; the wheel on it has cooled, and takes the hub's temperature."""
+        self._add((Cool(INSERTED), ChangeBelt(INSERTED, belt)))
+        self.belt, self.at_c = belt, None
+
+    def _reference_after_change(self, reserved: ReservedWheel, belt: str) -> None:
+        """Change the belt under the reserved wheel, and measure the reference on it."""
+        self._put_on(belt)
+        self._add((Heat(INSERTED, self.held(self.references.on(belt).values)),))
+        self._measure_reserved(self.wheels[reserved.number - 1])
+
+    def _on_reserved(self, reserved: ReservedWheel, belt: str) -> None:
+        """Measure the reference condition on its reserved wheel; ``belt``: the one that is on, or the first."""
+        specimen = self.references.specimens[0]
+        held_c = self.held(self.references.on(belt).values)
         if not reserved.number:
-            wheel = self._mount(specimen, 1, held_c)
+            wheel = self._mount(specimen, 1, held_c, belt)
             reserved.number = wheel.wheel
         else:
             wheel = self.wheels[reserved.number - 1]
             self._remount(wheel, specimen, held_c)
+        self._measure_reserved(wheel)
+
+    def _measure_reserved(self, wheel: WheelWear) -> None:
+        condition, specimen = self.references.on(self.belt), self.references.specimens[0]
         setpoint = Setpoint(specimen.compound, condition.values, self.recipe.axes)
         self._measure(wheel, condition, setpoint, self.estimator.costs.of(setpoint, condition.settings), reference=True)
 
     def _exchanged(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> None:
         """Mount the reserved wheel for a reference, then the present wheel again."""
         assert self.references.reserved is not None
-        self._on_reserved(self.references.reserved)
+        self._on_reserved(self.references.reserved, self.belt)
         self._remount(wheel, specimen, held_c)
 
     def _remount(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> None:
+        self._add(self._mounting_again(wheel, specimen, held_c))
+
+    def _mounting_again(self, wheel: WheelWear, specimen: Specimen, held_c: float) -> tuple[WheelStep, ...]:
         cool_c = self.references.hub_below_c(held_c)
-        self._add(mount_again(specimen, wheel.replicate, wheel.wheel, held_c, cool_c))
+        return mount_again(specimen, wheel.replicate, wheel.wheel, held_c, cool_c)
 
     def _measure(
         self,

@@ -94,8 +94,7 @@ class _Limits:
         names = [self._node(at) for at in (*places, (*AT, "compound"))]
         self.compounds = list(dict.fromkeys(name for name in names if isinstance(name, str)))
         self.twin = TwinLaws(rig, tree)
-        found = {name: self.twin.law(name) for name in self.compounds}
-        self.models = {name: law for name, law in found.items() if law is not None}
+        self.models = [(name, law) for name in self.compounds for law in self.twin.laws(name)]
 
     def problems(self) -> Iterator[Problem]:
         """Yield every problem, unordered, possibly twice."""
@@ -317,7 +316,7 @@ class _Limits:
         if not motions or not temperatures or not pressing:
             return
         cases: list[_Case] = []
-        for name, model in self.models.items():
+        for name, model in self.models:
             # Both of the paper's models are a temperature factor times a factor of load and slip: the worst
             # temperature is the same everywhere.
             hottest = max(temperatures, key=lambda at_c: model.mu(at_c, pressing[0].value, motions[0].slip))

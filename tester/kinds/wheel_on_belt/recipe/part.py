@@ -16,6 +16,7 @@ from tester.inputs.recipe.grid_settings import values_of
 from tester.inputs.recipe.plan import Plan, Stand
 from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, Recipe
 from tester.inputs.recipe.semantics import listed
+from tester.inputs.recipe.surface_turns import surface_problems
 from tester.inputs.recipe.time_estimate import Estimator
 from tester.inputs.rig import Rig
 from tester.kinds.wheel_on_belt.budget import terms_of
@@ -119,6 +120,7 @@ class WheelPart(WheelDescription):
         top = tree.data if isinstance(tree.data, dict) else {}
         if not top.get("grids") and top.get("pre_grind") is None:
             yield tree.problem((), "there is nothing to do: neither grids nor pre_grind")
+        yield from surface_problems(tree)
         if recipe is not None:
             yield from reference_problems(for_wheels(recipe), tree, self.sense)
 

@@ -1,4 +1,4 @@
-"""Steps and plan of this machine: mount, grind, rest, heat, measure in slip pulses, and cool wheels.
+"""Steps and plan of this machine: mount, grind, rest, heat, measure in slip pulses, and cool wheels; change belts.
 
 Units are in the names: _m_s, _n, _mm, _c (temperature in degC), _k (temperature difference in K), _s.
 """
@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import ClassVar, Literal, TypeAlias
 
 from tester.inputs.recipe.plan import ConditionStep, Mounted, Plan, PromptStep, Settings, Step
+from tester.inputs.recipe.surface_turns import ChangeSurface
 from tester.kinds.wheel_on_belt.rig.sections import HAND_C
 
 WearCheck: TypeAlias = Literal["never", "each_condition", "prompt"]
@@ -36,6 +37,17 @@ class Install(Step):
     @property
     def title(self) -> str:
         return f"{'mount again' if self.again else 'install'} wheel {self.wheel} ({self.compound})"
+
+
+@dataclass(frozen=True, slots=True)
+class ChangeBelt(ChangeSurface):
+    """A person puts a belt on that the grids name, clean and without dust. ``again``: a run resumes on it."""
+
+    again: bool = False
+
+    @property
+    def title(self) -> str:
+        return f"put belt {self.surface} on"
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +134,7 @@ class ToolPrompt(PromptStep):
     """A task at the wheel with a tool that keeps hands off it, at a hub of ``limits.tool_hub`` or less."""
 
 
-WheelStep: TypeAlias = Install | PreGrind | Rest | Heat | WheelCondition | Cool | PromptStep
+WheelStep: TypeAlias = Install | ChangeBelt | PreGrind | Rest | Heat | WheelCondition | Cool | PromptStep
 
 
 @dataclass(slots=True)
@@ -180,12 +192,21 @@ class WheelPlan(Plan):
 
 
 def starts_of(steps: Sequence[Step], part: Callable[[Install], object]) -> list[int]:
-    """Return the start positions of a plan's parts, the first at 0: each part's first Install, or a Cool before it."""
+    """Return the start positions of a plan's parts, the first at 0: each part's first Install, with a Cool and a change
+    of the belt before it."""
     starts = [0]
     before: object = None
     for position, step in enumerate(steps):
         if isinstance(step, Install):
             if before is not None and part(step) != before:
-                starts.append(position - 1 if isinstance(steps[position - 1], Cool) else position)
+                starts.append(begin_of(steps, position))
             before = part(step)
     return starts
+
+
+def begin_of(steps: Sequence[Step], install: int) -> int:
+    """Return the position of the first step that belongs to an Install at a position: a Cool, a change of the belt."""
+    begin = install
+    while begin and isinstance(steps[begin - 1], Cool | ChangeBelt):
+        begin -= 1
+    return begin

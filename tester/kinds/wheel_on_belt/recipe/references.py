@@ -2,7 +2,8 @@
 
 It is due at the start, after every ``every`` conditions, and at the end. On the present wheel it counts as a
 condition, with its wear. A reserved wheel must be mounted each time. It is therefore also due at
-every change of the wheel, which costs one more change instead of two; the count then restarts."""
+every change of the wheel, which costs one more change instead of two; the count then restarts. Each belt has its own
+references: it is due first and last on every one."""
 
 from __future__ import annotations
 
@@ -12,6 +13,7 @@ from typing import Any, Final, cast
 
 from tester.analysis.left_out import CLOSEST_OF
 from tester.analysis.reference import RESERVED
+from tester.base.axes import Setpoint
 from tester.base.source import Location, Problem, Tree
 from tester.base.units import shown
 from tester.inputs.recipe.conditions import Condition
@@ -20,6 +22,8 @@ from tester.inputs.recipe.recipe_schema import GridModel, MeasureModel, grid_mod
 from tester.inputs.recipe.reference_section import REFERENCE, reference_metadata
 from tester.inputs.recipe.semantics import axis_values
 from tester.inputs.recipe.specimen_section import checks_of
+from tester.inputs.recipe.surface_turns import surface_among
+from tester.kinds.wheel_on_belt.image.axes import on_belt
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Heat, WheelStep
 from tester.kinds.wheel_on_belt.recipe.schema import (
     REFERENCE_HELD,
@@ -104,6 +108,7 @@ class ReferenceRounds:
         """Conditions since the last reference."""
         self.made = 0
         self._ambient_c = ambient_c
+        self._axes = recipe.axes
         self._first_row = conditions * len(recipe.specimens) + 1
         self._last = (len(recipe.specimens), recipe.replicates)
         self.specimens: tuple[Specimen, ...] = ()
@@ -124,24 +129,41 @@ class ReferenceRounds:
         """Return whether to mount the reserved wheel before the next condition."""
         return self.reserved is not None and self.since >= self.every
 
-    def inserted(
-        self, blocks: Sequence[Sequence[Condition[WheelSettings]]], specimen: int, replicate: int
-    ) -> list[list[Condition[WheelSettings]]]:
-        """Return the blocks of a replicate with the reference before every condition at which it is due."""
+    def on(self, belt: str) -> Condition[WheelSettings]:
+        """Return the reference condition on a belt that the grids name; "": on the recipe's only belt."""
         assert self.condition is not None
+        if not belt:
+            return self.condition
+        setpoint = on_belt(Setpoint("", self.condition.values, self._axes), belt)
+        return self.condition._replace(values=setpoint.values)
+
+    def inserted(
+        self, blocks: Sequence[Sequence[Condition[WheelSettings]]], specimen: int, replicate: int, belt: str
+    ) -> list[list[Condition[WheelSettings]]]:
+        """Return the blocks of a replicate with the reference before every condition at which it is due.
+
+        It is due first and last on every belt; ``belt``: the one that is on before.
+        """
         count, begun = self.since, bool(self.made)
+        belt_among = surface_among(self._axes)
+        belts = {belt_among(block[0].values) for block in blocks}
         filled_blocks: list[list[Condition[WheelSettings]]] = []
         for block in blocks:
+            own = belt_among(block[0].values)
+            if own != belt:
+                if filled_blocks:
+                    filled_blocks[-1].append(self.on(belt))
+                belt, begun = own, False
             filled: list[Condition[WheelSettings]] = []
             for condition in block:
                 if not begun or count >= self.every:
-                    filled.append(self.condition)
+                    filled.append(self.on(own))
                     begun, count = True, 0
                 filled.append(condition)
                 count += 1
             filled_blocks.append(filled)
-        if filled_blocks and (specimen, replicate) == self._last:
-            filled_blocks[-1].append(self.condition)
+        if filled_blocks and (len(belts) > 1 or (specimen, replicate) == self._last):
+            filled_blocks[-1].append(self.on(belt))
         return filled_blocks
 
     def next_row(self) -> int:

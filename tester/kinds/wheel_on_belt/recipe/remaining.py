@@ -3,7 +3,8 @@
 It begins at the first condition that is not over. The wheel on the rig stays if that condition belongs to it: it stays
 mounted with its wear, is ground in only if that was incomplete, rests if it has measured nothing, then is heated again.
 Specimens are resumed separately, because a simulated run may measure them at the same time. With references, all steps
-after the first remaining step also remain.
+after the first remaining step also remain. A belt that the grids name is asked for again: an interruption does not
+show which one is on.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from tester.kinds.wheel_on_belt.recipe.plan_steps import (
     WheelStep,
     starts_of,
 )
-from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel
+from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, prepare_wheel, with_belts
 
 
 def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
@@ -33,7 +34,7 @@ def remaining(plan: WheelPlan, stand: Stand) -> WheelPlan:
     for begin, end in zip(starts, [*starts[1:], None], strict=True):
         segment = plan.steps[begin:end]
         steps += segment if steps and plan.references else _rest_of(plan, segment, stand)
-    return replace(plan, steps=tuple(steps))
+    return replace(plan, steps=with_belts(steps, again=True))
 
 
 def _rest_of(plan: WheelPlan, segment: Sequence[WheelStep], stand: Stand) -> list[WheelStep]:

@@ -13,6 +13,7 @@ from sim.physics.friction import KNOWN, MODEL_NAMES, UnknownCompoundError
 from sim.physics.laws import NO_SETTING
 from sim.physics.materials import OutsideError
 from sim.physics.wheel_law import WHEEL_C, WHEEL_M_S, WHEEL_N, WheelLaw, wheel_law
+from tester.base.axes import SURFACE
 from tester.base.source import InvalidSource, Problem, Tree
 from tester.base.units import shown
 from tester.inputs.materials.setting import law_setting
@@ -43,41 +44,52 @@ def twin_law(rig: RigConfig, compound: str, surface: str = "", recipe: Path | No
 
 
 class TwinLaws:
-    """The laws of a recipe's compounds, each found once."""
+    """The laws of a recipe's compounds on its belts, each found once."""
 
     def __init__(self, rig: RigConfig, tree: Tree) -> None:
         """Find nothing yet."""
         self._rig, self._path = rig, Path(tree.name)
-        top = tree.data if isinstance(tree.data, dict) else {}
-        abrasive = top.get("abrasive")
-        name = abrasive.get("name") if isinstance(abrasive, dict) else abrasive
-        self._surface = name if isinstance(name, str) else ""
-        self._found: dict[str, WheelLaw | str] = {}
+        self._surfaces = [*_named_in(tree)] or [""]
+        self._found: dict[tuple[str, str], WheelLaw | str] = {}
 
-    def law(self, compound: str) -> WheelLaw | None:
-        """Return the law of a compound; None without a usable one, or on a machine without a known one."""
-        found = self._of(compound)
-        if isinstance(found, str) or (found.assumed and not self._rig.simulated):
-            return None
-        return found
+    def laws(self, compound: str) -> list[WheelLaw]:
+        """Return the laws of a compound, one for each belt on which it has another; none on a machine without a known
+        one.
+        """
+        found = [self._of(compound, surface) for surface in self._surfaces]
+        usable = [one for one in found if not isinstance(one, str) and not (one.assumed and not self._rig.simulated)]
+        return [one for place, one in enumerate(usable) if one not in usable[:place]]
 
     def fault(self, compound: str) -> str:
         """Return why the simulated wheel cannot rub with a compound, "" if it can."""
-        found = self._of(compound)
-        return found if isinstance(found, str) else ""
+        found = (self._of(compound, surface) for surface in self._surfaces)
+        return next((one for one in found if isinstance(one, str)), "")
 
-    def _of(self, compound: str) -> WheelLaw | str:
-        if compound not in self._found:
+    def _of(self, compound: str, surface: str) -> WheelLaw | str:
+        key = compound, surface
+        if key not in self._found:
             try:
-                self._found[compound] = _sound(twin_law(self._rig, compound, self._surface, self._path))
+                self._found[key] = _sound(twin_law(self._rig, compound, surface, self._path))
             except UnknownCompoundError as error:
-                self._found[compound] = f"sim.friction_model {self._rig.sim.friction_model}: {error}"
+                self._found[key] = f"sim.friction_model {self._rig.sim.friction_model}: {error}"
             except (ValueError, InvalidSource) as error:
                 fault = f"the simulated wheel has no friction for {shown(compound)}: {error}"
                 if isinstance(error, OutsideError):
                     fault += "; a wheel also rolls (expected moduli with beyond: hold)"
-                self._found[compound] = fault
-        return self._found[compound]
+                self._found[key] = fault
+        return self._found[key]
+
+
+def _named_in(tree: Tree) -> Iterator[str]:
+    """Yield the names of the belts in a recipe: the abrasive's, and those that its grids list."""
+    top = tree.data if isinstance(tree.data, dict) else {}
+    abrasive, grids = top.get("abrasive"), top.get("grids")
+    name = abrasive.get("name") if isinstance(abrasive, dict) else abrasive
+    if isinstance(name, str):
+        yield name
+    for grid in grids if isinstance(grids, list) else []:
+        listed = grid.get(SURFACE) if isinstance(grid, dict) else None
+        yield from (one for one in (listed if isinstance(listed, list) else [listed]) if isinstance(one, str))
 
 
 def _sound(found: WheelLaw) -> WheelLaw:
@@ -101,10 +113,11 @@ def twin_doubts(rig: RigConfig, recipe: Recipe, tree: Tree) -> Iterator[Problem]
     slip_m_s = p.first_contact_sweep * p.first_contact_slow_m_s + p.first_contact_creep_m_s
     for number, specimen in enumerate(recipe.specimens):
         at, compound = ("specimens", number, "compound"), specimen.compound
-        law = found.law(compound)
-        if law is None or compound in seen:
+        laws = found.laws(compound)
+        if not laws or compound in seen:
             continue
         seen.add(compound)
+        law = min(laws, key=lambda one: one.mu(rig.ambient_c, p.first_contact_load_n, slip_m_s))
         if law.assumed:
             near = get_close_matches(compound, KNOWN, 1)
             meant = f", did you mean {near[0]}?" if near else ""

@@ -18,6 +18,7 @@ from tester.kinds.wheel_on_belt.image.devices import Devices
 from tester.kinds.wheel_on_belt.image.process_image import CELL, Readings
 from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY, KnownRatio
 from tester.kinds.wheel_on_belt.procedures.arming import WheelArming
+from tester.kinds.wheel_on_belt.procedures.belts import Belts
 from tester.kinds.wheel_on_belt.procedures.on_record import WheelResults
 from tester.kinds.wheel_on_belt.procedures.steps import DEFAULT_LOAD_N, DEFAULT_SPEED_M_S, WheelProcedures
 from tester.kinds.wheel_on_belt.procedures.wheel_life import wheel_of
@@ -44,12 +45,16 @@ def take_up(procedures: WheelProcedures, results: WheelResults, point: ResumePoi
 
 
 def take_up_wheels(ctx: Context, plan: WheelPlan, stand: Stand) -> None:
-    """Restore the present belt and the earlier wheels for a plan with references; other plans have a belt per part."""
+    """Restore the history of the belts, and the earlier wheels for a plan with references.
+
+    On a simulated rig a plan without references has belts of its own in every part.
+    """
+    if plan.references or not ctx.rig.simulated:
+        ctx.belts = Belts(travels_m=stand.travels_m)
+    if ctx.belts.travel_m > 0.0:
+        ctx.attendant.belt_travelled(ctx.belts.travel_m)
     if not plan.references:
         return
-    ctx.belt_travel_m = stand.travel_m
-    if stand.travel_m > 0.0:
-        ctx.attendant.belt_travelled(stand.travel_m)
     for piece in stand.mounted:
         compound = plan.specimen(piece.specimen).compound
         wheel = wheel_of(ctx.rig.geometry, piece.specimen, piece.replicate, piece.number, compound, piece.diameter_mm)

@@ -14,6 +14,7 @@ from tester.kinds.wheel_on_belt.interlocks.heat_balance import NO_HISTORY
 from tester.kinds.wheel_on_belt.procedures.on_record import record_state
 from tester.kinds.wheel_on_belt.procedures.steps import WheelProcedures
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool, Install, WheelPlan, starts_of
+from tester.kinds.wheel_on_belt.recipe.wheel_change import with_belts
 from tester.kinds.wheel_on_belt.rig import RigConfig
 from tester.kinds.wheel_on_belt.run.build import build_run
 from tester.kinds.wheel_on_belt.run.past_runs import known_heat
@@ -35,6 +36,7 @@ def split(plan: Plan) -> tuple[Part, ...]:
         steps = plan.steps[begin:end]
         if isinstance(steps[0], Cool):
             steps = steps[1:]  # a separate rig starts cold
+        steps = with_belts(steps, again=False)  # ... and with a belt of its own
         wheels = {step.wheel for step in steps if isinstance(step, Install)}
         parts.append(Part(number, _part_of(plan, steps, wheels), last_wheel))
         # Every unplanned wheel measures at least one condition, so two parts never use the same number.
