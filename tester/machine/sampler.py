@@ -3,12 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import reduce
-from itertools import groupby
-from operator import attrgetter, itemgetter
 from typing import Any, Final, TypeAlias
 
-from tester.base.quantities import LAST, Quantities
+from tester.base.quantities import FURTHER, LAST, Quantities
 from tester.machine.context import BaseContext
 from tester.store.recorder import Recorder
 
@@ -20,43 +17,32 @@ Values: TypeAlias = Callable[[BaseContext[Any, Any, Any]], tuple[float, ...]]
 """Function that reads values from the context of a run."""
 
 
-def values_at(sources: Sequence[str]) -> Values:
+def values_at(sources: Sequence[str], *more: str) -> Values:
     """Return a function that reads the values at these sources (``Channel.source``), in order.
 
-    It makes one call in C for each sequence of attributes, or of keys of the same mapping.
+    It is one expression, written as text: calls, even in C, take three times as long in every scan. ``more``: further
+    items of that expression, of the context ``ctx``.
     """
-    parts = [_stretch(holder, list(stretch)) for holder, stretch in groupby(sources, _holder)]
-    return reduce(_joined, parts)
-
-
-def _holder(source: str) -> str:
-    """Return the mapping that contains a source; "" for an attribute."""
-    holder, bracket, _ = source.partition("[")
-    return holder if bracket else ""
-
-
-def _stretch(holder: str, sources: list[str]) -> Values:
-    if not holder:
-        return _tuple_of(attrgetter(*sources), len(sources))
-    keys = [source[len(holder) + 1 : -1] for source in sources]
-    mapping, taken = attrgetter(holder), _tuple_of(itemgetter(*keys), len(keys))
-    return lambda ctx: taken(mapping(ctx))
-
-
-def _tuple_of(getter: Callable[[Any], Any], count: int) -> Callable[[Any], tuple[float, ...]]:
-    return getter if count > 1 else lambda one: (getter(one),)
-
-
-def _joined(first: Values, then: Values) -> Values:
-    return lambda ctx: first(ctx) + then(ctx)
+    holders: dict[str, str] = {}
+    items: list[str] = []
+    for source in sources:
+        path, bracket, key = source.partition("[")
+        holder, _, name = (path, "", "") if bracket else path.rpartition(".")
+        place = holders.setdefault(holder, f"holder_{len(holders)}") if holder else "ctx"
+        items.append(f"{place}[{key[:-1]!r}]" if bracket else f"{place}.{name}")
+    lines = [f" {place} = ctx.{holder}" for holder, place in holders.items()]
+    names: dict[str, Any] = {}
+    exec("\n".join(("def values(ctx):", *lines, f" return ({', '.join((*items, *more))},)")), names)
+    values: Values = names["values"]
+    return values
 
 
 def row_builder(quantities: Quantities) -> Values:
-    """Return a function that makes the row of a scan, without its last three channels."""
-    recorded = values_at([c.source for c in quantities.recorded[: -len(LAST) - len(quantities.further)]])
-    if not quantities.further:
-        return recorded
-    return lambda ctx: (*recorded(ctx), *ctx.readings.channels)
+    """Return a function that makes the row of a scan."""
+    further = (f"*ctx.{FURTHER}",) if quantities.further else ()
+    measured = [channel.source for channel in quantities.recorded]
+    last = [f"float(ctx.{source})" for source in measured[-len(LAST) :]]
+    return values_at(measured[: -len(LAST) - len(quantities.further)], *further, *last)
 
 
 class Sampler:
@@ -65,7 +51,7 @@ class Sampler:
     def __init__(self, recorder: Recorder, quantities: Quantities) -> None:
         """``recorder``: the run's; ``quantities``: the channels of a row."""
         self.recorder = recorder
-        self._measured = row_builder(quantities)
+        self._row_of = row_builder(quantities)
         self.due_s = float("-inf")
 
     def record(self, ctx: BaseContext[Any, Any, Any], out: Any) -> None:
@@ -74,6 +60,7 @@ class Sampler:
             return
         self.due_s = ctx.now + IDLE_PERIOD_S
         ctx.setpoints = out
-        row = (*self._measured(ctx), float(ctx.gate), float(ctx.burst), float(ctx.repeat_key))
+        row_of = self._row_of  # an attribute that is called as a method is looked up anew (CPython 3.11)
+        row = row_of(ctx)
         self.recorder.sample(row)
         ctx.sample = row
