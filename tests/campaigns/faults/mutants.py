@@ -98,8 +98,8 @@ BY_HAND: tuple[Mutant, ...] = (
            "        state.held = now_held\n        state.tripped",
            "        now_held, state.held = now_held & ~state.held, now_held\n        state.tripped"),
     Mutant("an early return hides the other levels", _TABLE,
-           "        if v.loaded and not v.unpowered:\n", "        if found & 1:\n            return 0\n"
-           "        if v.loaded and not v.unpowered:\n"),
+           "        if v.lifting_s >= 0.0 or v.resting or v.unpowered:\n",
+           "        if found & 1:\n            return 0\n        if v.lifting_s >= 0.0 or v.resting or v.unpowered:\n"),
     Mutant("stale accepted: drives", _WIRES,
            "return allowed if allowed < most else most", "return 1e9"),
     Mutant("stale accepted: load", _LOAD,
