@@ -166,7 +166,7 @@ class PdoExchange(SyncFollower):
 
     # out -----------------------------------------------------------------------------------------------------
 
-    def on_sync(self, t: float, *, plainly: bool = False) -> bool:
+    def on_sync(self, t: float, plainly: bool = False) -> bool:
         """Apply the frames held for this SYNC and send its TPDOs, unless the wire sends the only one."""
         for received in self.fresh:
             received.sink(received.held, t)

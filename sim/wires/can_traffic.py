@@ -39,7 +39,7 @@ class SyncFollower(ABC):
         self.take_sample = take_sample
 
     @abstractmethod
-    def on_sync(self, t: float, *, plainly: bool = False) -> bool:
+    def on_sync(self, t: float, plainly: bool = False) -> bool:
         """Act on a SYNC that arrived at ``t`` s and answer it.
 
         ``plainly``: if it becomes ``plain`` by that, its answer is left to the wire; return whether it is.

@@ -242,20 +242,20 @@ class CanWire(CanListeners):
         quick = self.connected and not self.watchers
         arrival, occupied_s = self._busy_s, self.occupied_s
         for follower in self._followers:
-            plain = quick and follower.plain
-            if not plain:
+            if not (quick and follower.plain):
                 self._busy_s, self.occupied_s = arrival, occupied_s
-                plain = follower.on_sync(t, plainly=quick)
+                left = follower.on_sync(t, quick)
                 arrival, occupied_s = self._busy_s, self.occupied_s
-            if plain:
-                data = follower.sample
-                if follower.stale:
-                    take = follower.take_sample  # called as a method it is looked up anew (CPython 3.11)
-                    data = take()
-                length_s = frame_s[len(data)]
-                arrival += length_s
-                occupied_s += length_s
-                inbox.append((arrival, follower.sample_id, data))
+                if not left:
+                    continue
+            data = follower.sample
+            if follower.stale:
+                take = follower.take_sample  # called as a method it is looked up anew (CPython 3.11)
+                data = take()
+            length_s = frame_s[len(data)]
+            arrival += length_s
+            occupied_s += length_s
+            inbox.append((arrival, follower.sample_id, data))
         self._busy_s, self.occupied_s = arrival, occupied_s
 
     def settle(self, now: float) -> None:

@@ -53,7 +53,7 @@ class HeatFlow:
 
     def advance(self, dt: float, heater_w: float, friction_w: float, touching: bool, rotating: bool) -> float:
         """Advance by ``dt`` s with these powers and return the temperature of the tread's surface, degC."""
-        key = 2 * touching + rotating
+        key = (3 if rotating else 2) if touching else (1 if rotating else 0)  # arithmetic of truth values takes longer
         if key != self._key or friction_w > CALM_FRICTION_W:
             self._quiet_s = 0.0
             if self._calm:

@@ -265,7 +265,7 @@ class Follower(SyncFollower):
         self.syncs: list[float] = []
         wire.follow(self, 1)
 
-    def on_sync(self, t: float, *, plainly: bool = False) -> bool:
+    def on_sync(self, t: float, plainly: bool = False) -> bool:
         self.syncs.append(t)
         return False
 
