@@ -15,7 +15,19 @@ import types
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Annotated, Any, Final, TypeVar, Union, cast, get_args, get_origin, get_type_hints
+from typing import (
+    TYPE_CHECKING,
+    Annotated,
+    Any,
+    Final,
+    NamedTuple,
+    TypeVar,
+    Union,
+    cast,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 from tester.base.source import InvalidSource, Tree
 from tester.base.units import Quantity, units_like
@@ -104,14 +116,13 @@ def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
 
 def as_tree(config: DataclassInstance) -> dict[str, object]:
     """Return a configuration as data for a file: every key, quantities as text with their unit."""
-    hints = _hints(type(config))
     tree: dict[str, object] = {}
-    for field in fields(config):
-        value, hint = getattr(config, field.name), hints[field.name]
-        if _takes_rest(hint):
-            tree.update({key: _number(number) for key, number in value.items()})
-        elif value or not _may_be_empty(field):
-            tree[_key(field.name, hint)] = _plain(value, hint)
+    for name, key, unit, hint, may_be_empty in _layout(type(config)):
+        value = getattr(config, name)
+        if key is None:
+            tree.update({further: _number(number) for further, number in value.items()})
+        elif value or not may_be_empty:
+            tree[key] = _plain(value, hint, unit)
     return tree
 
 
@@ -123,6 +134,28 @@ def as_text(config: DataclassInstance) -> str:
 @cache
 def _hints(kind: type[DataclassInstance]) -> dict[str, Any]:
     return get_type_hints(kind, include_extras=True)
+
+
+class _FieldLayout(NamedTuple):
+    """How a field is written; ``key`` is None for the field of all further keys."""
+
+    name: str
+    key: str | None
+    unit: str | None
+    hint: Any
+    may_be_empty: bool
+
+
+@cache
+def _layout(kind: type[DataclassInstance]) -> tuple[_FieldLayout, ...]:
+    """Return how the fields of a dataclass are written, worked out once per class."""
+    hints = _hints(kind)
+    return tuple(
+        _FieldLayout(
+            field.name, None if _takes_rest(hint) else _key(field.name, hint), _unit(hint), hint, _may_be_empty(field)
+        )
+        for field, hint in ((one, hints[one.name]) for one in fields(kind))
+    )
 
 
 def _takes_rest(hint: object) -> bool:
@@ -241,18 +274,18 @@ def _type(hint: Any) -> Any:
     return cast("object", hint)
 
 
-def _plain(value: object, hint: object) -> object:
-    unit = _unit(hint)
+def _plain(value: object, hint: object, unit: str | None) -> object:
     if unit is not None and isinstance(value, int | float):
         return _number(value) if unit == "1" else Written(f"{_number(value)} {unit}")
     if is_dataclass(value) and not isinstance(value, type):
         return as_tree(value)
     if isinstance(value, Mapping):
         of = get_args(_without_marks(hint))[1]
-        return {key: _plain(entry, of) for key, entry in cast("Mapping[str, object]", value).items()}
+        unit = _unit(of)
+        return {key: _plain(entry, of, unit) for key, entry in cast("Mapping[str, object]", value).items()}
     if isinstance(value, tuple):
         items = cast("tuple[object, ...]", value)
-        return [_plain(item, None) for item in items]
+        return [_plain(item, None, None) for item in items]
     return value
 
 

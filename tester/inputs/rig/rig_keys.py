@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, is_dataclass
 from functools import cache
 from types import UnionType
@@ -103,22 +103,38 @@ def value_at(rig: Rig, place: Place) -> object:
 
 
 def _found(node: Any, place: Place, above: Place) -> Iterator[tuple[Place, object]]:
-    if not place or node is None:
-        if node is not None:
-            yield above, node
+    """Yield what is at a place below a section, once for each name that the file chooses."""
+    if ANY not in place:
+        value = _at(node, place)
+        if value is not None:
+            yield (*above, *place), value
         return
-    first, *rest = place
-    if isinstance(node, Mapping):
-        section = cast("Mapping[str, Any]", node)
-        below: Iterable[tuple[str, Any]] = section.items() if first == ANY else ((first, section.get(first)),)
-    else:
-        name = _names(cast("type[DataclassInstance]", type(node))).get(first)
-        below = ((first, getattr(node, name)),) if name is not None else ()
-    for key, value in below:
-        yield from _found(value, tuple(rest), (*above, key))
+    number = place.index(ANY)
+    sections = _at(node, place[:number])
+    if isinstance(sections, Mapping):
+        for name, section in cast("Mapping[str, Any]", sections).items():
+            yield from _found(section, place[number + 1 :], (*above, *place[:number], name))
+
+
+def _at(node: Any, place: Place) -> Any:
+    """Return what is at a place without a name that the file chooses, None where a section is not there.
+
+    A rig is looked through some times whenever its file is read: there are no generators and no tests of types here.
+    """
+    for key in place:
+        if node is None:
+            return None
+        names = _names(cast("type[DataclassInstance]", type(node)))
+        if names is None:
+            node = node.get(key)
+        elif (name := names.get(key)) is not None:
+            node = getattr(node, name)
+        else:
+            return None
+    return node
 
 
 @cache
-def _names(kind: type[DataclassInstance]) -> dict[str, str]:
-    """Return the fields of a section by their keys."""
-    return {entry.key: entry.name for entry in entries(kind)}
+def _names(kind: type[DataclassInstance]) -> dict[str, str] | None:
+    """Return the fields of a section by their keys; None for a mapping of sections."""
+    return None if issubclass(kind, Mapping) else {entry.key: entry.name for entry in entries(kind)}

@@ -78,6 +78,8 @@ class Commissioning:
         self._run_recipe = run_recipe
         self._lapse = lapse
         self._given = dict(given or {})
+        self._hashes: dict[tuple[str, ...], str] = {}
+        """Of the sections that steps depend on: the rig's file does not change meanwhile."""
         self._rig_sha256 = hashlib.sha256(rig.text.encode()).hexdigest()
         self._walk: Walk | None = None
         self._stopped = False
@@ -189,7 +191,10 @@ class Commissioning:
             clock.sleep_until(clock.monotonic() + POLL_S)
 
     def _sections(self, step: CommissionStep) -> str:
-        return sections_sha256(self.rig, step.sections)
+        found = self._hashes.get(step.sections)
+        if found is None:
+            found = self._hashes[step.sections] = sections_sha256(self.rig, step.sections)
+        return found
 
     def _done(self) -> dict[str, Mapping[str, Any]]:
         entries = {step.name: self.record.standing(step.name, self._sections(step)) for step in self.steps}
