@@ -24,7 +24,7 @@ from tests.campaigns.acceptance.figure import Figure, equal
 from tests.campaigns.compiled.worker import Case
 from tests.campaigns.faults.recipes import HEATED, QUICK, SIDESLIP
 from tests.extension.installing import EXAMPLES, describe
-from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
+from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, QUIET
 
 CHECKOUT = Path(__file__).parents[3]
 WORKER = Path(__file__).with_name("worker.py")
@@ -39,9 +39,9 @@ FAULT_AT_S = 40.0
 def cases(full: bool) -> list[Case]:
     """Return what is run on both sides."""
     quickstart = find("quickstart").read_text(encoding="utf-8")
-    recipes = {"short": SHORT, "quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED}
+    recipes = {"short": AT_ONCE, "quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED}
     found = [_case(f"{name}, seed {seed}", text, seed) for name, text in recipes.items() for seed in (0, 1)]
-    found.append(_case("short, perfect sensors", SHORT, 0, QUIET))
+    found.append(_case("short, perfect sensors", AT_ONCE, 0, QUIET))
     found.append(_case("quickstart", quickstart, 0))
     own = OWN_KIND / "lab_sledge"
     own_recipe, own_rig = (own / "recipe.yaml").read_text(encoding="utf-8"), str(own / "rig.yaml")
@@ -50,7 +50,7 @@ def cases(full: bool) -> list[Case]:
     if full:
         found.append(_case("pin-on-disc", find("pin-on-disc").read_text(encoding="utf-8"), 0, rig="pin-on-disc"))
     for phrase in list(CATALOGUE)[:: 1 if full else SAMPLE_EVERY]:
-        found.append(_case(f"fault: {phrase}", SHORT, 0, faults=(f"t={FAULT_AT_S:g} s: {phrase}",)))
+        found.append(_case(f"fault: {phrase}", AT_ONCE, 0, faults=(f"t={FAULT_AT_S:g} s: {phrase}",)))
     return found
 
 

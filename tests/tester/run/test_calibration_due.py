@@ -13,14 +13,14 @@ from tester.run.endings import CannotStartError
 from tester.run.kind_lookup import load_rig, recipe_part, run_parts
 from tester.run.session import Session
 from tester.run.session_options import SessionOptions
-from tests.tester.kinds.wheel_on_belt.bench import SHORT
+from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE
 from tests.tester.run.test_session import Screen
 
 ENDED = "calibration.load_cell=2020-01-31"
 
 
 def session(home: Path, *overrides: str) -> tuple[Session, Screen]:
-    (home / "short.yaml").write_text(SHORT, encoding="utf-8")
+    (home / "short.yaml").write_text(AT_ONCE, encoding="utf-8")
     screen = Screen()
     options = SessionOptions(recipe=str(home / "short.yaml"), out=home / "runs", overrides=overrides)
     return Session(options, screen), screen

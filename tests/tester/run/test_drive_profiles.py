@@ -12,7 +12,7 @@ from drivers.drives.reader import GENERIC, drive_profile, drive_profile_names
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.machine.run import Outcome
-from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
+from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, SHORT, Simulation
 
 PROFILES = [name for name in drive_profile_names() if not drive_profile(name).inverter]
 NOT_FOR_A_PRESS = ("elmo_simpliq", "kinco_fd")
@@ -28,7 +28,7 @@ def overrides(profile: str) -> tuple[str, ...]:
 
 @pytest.mark.parametrize("profile", ["kinco_fd", "maxon_epos4"])     # the two that are farthest from the generic one
 def test_a_short_recipe_runs_to_its_end_without_a_trip(profile: str) -> None:
-    simulation = Simulation(SHORT, overrides(profile), seed=1).to_the_end(4000.0)
+    simulation = Simulation(AT_ONCE, overrides(profile), seed=1).to_the_end(4000.0)
     run = simulation.run
     assert run.engine.control.state.trip is None and run.outcome is Outcome.DONE, run.reason
     press = simulation.world.axes["press"]

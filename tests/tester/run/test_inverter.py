@@ -9,7 +9,7 @@ import pytest
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.machine.run import Outcome
-from tests.tester.kinds.wheel_on_belt.bench import SHORT, Simulation
+from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, Simulation
 
 BELT = ("axes.belt.profile=cia402_inverter", "axes.belt.velocity_increments=1100")
 WHEEL = ("axes.wheel.profile=cia402_inverter", "axes.wheel.gear=12", "axes.wheel.velocity_increments=114.59156")
@@ -23,7 +23,7 @@ def refused(*overrides: str, rig: str = "sim") -> str:
 
 
 def test_wheel_and_belt_run_a_recipe_on_inverters() -> None:
-    simulation = Simulation(SHORT, (*BELT, *WHEEL), seed=1).to_the_end(4000.0)
+    simulation = Simulation(AT_ONCE, (*BELT, *WHEEL), seed=1).to_the_end(4000.0)
     run = simulation.run
     assert run.engine.control.state.trip is None and run.outcome is Outcome.DONE, run.reason
     assert simulation.world.axes["belt"].mode_display == 2

@@ -29,10 +29,10 @@ from tester.run.simulated import simulated_ports
 from tester.store import record_schema
 from tester.store.record_schema import VERSION
 from tester.store.run_reader import RunReader
-from tests.tester.kinds.wheel_on_belt.bench import SHORT
+from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE
 from tests.tester.run.test_session import TABLES, Ended, Screen
 
-TWO = SHORT.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n').replace("14 rev", "7 rev")
+TWO = AT_ONCE.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n').replace("14 rev", "7 rev")
 STEADY = ("sim.running_in=0", "sim.scatter=0")
 """A coefficient that stands still, seen through the noise of every sensor: the window is soon long enough."""
 ROOT = Path(__file__).parents[3]

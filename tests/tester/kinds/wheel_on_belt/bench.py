@@ -50,7 +50,10 @@ grids:
     load: 200 N
     temperature: 25 degC
 """
-"""A recipe of two minutes of rig time: no pre-grinding, no rest, one condition near ambient."""
+"""A recipe of five minutes of rig time, four of them to warm by 3 K: no pre-grinding, no rest, one condition."""
+
+AT_ONCE = SHORT.replace("25 degC", "23 degC")
+"""The same in a minute: the simulated room's 22 degC are within its band."""
 
 QUIET = ("sim.noise=0", "sim.scatter=0", "sim.running_in=0")
 """Overrides for a rig whose coefficient stands still from the first turn."""
