@@ -107,7 +107,9 @@ def in_turns(
             each_round()
         for side in (0, 1) if number % 2 else (1, 0):  # who begins alternates: speed drifts
             with TemporaryDirectory(dir=folder) as out:
-                costs[side].append(trees[side].cost(recipe, Path(out), *options))
+                cost = trees[side].cost(recipe, Path(out), *options)
+            costs[side].append(cost)
+            print(f"{number + 1}: {trees[side].name}, {cost.cpu_s:.2f} s CPU", file=sys.stderr, flush=True)
     return costs
 
 
