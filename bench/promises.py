@@ -64,7 +64,7 @@ class Asked(NamedTuple):
 ASKED = {"plain": Asked(2.5, 1.7, 2.2, 0.4), "compiled": Asked(3.0, 1.8, 2.7, 0.25)}
 
 
-class Effort(NamedTuple):
+class Extent(NamedTuple):
     """How much is measured, and where."""
 
     rounds: int
@@ -74,51 +74,51 @@ class Effort(NamedTuple):
     folder: Path
 
 
-def conditions(trees: Trees, asked: Asked, effort: Effort) -> list[Figure]:
+def conditions(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
     """Return how whole conditions compare."""
-    recipe = next(recipe for recipe in recipes() if recipe.quick is effort.quick)
-    costs = in_turns(trees, recipe.text, effort.rounds, effort.folder)
+    recipe = next(recipe for recipe in recipes() if recipe.quick is extent.quick)
+    costs = in_turns(trees, recipe.text, extent.rounds, extent.folder)
     return faster(recipe.name, trees, costs, asked.conditions)
 
 
-def flat(trees: Trees, asked: Asked, effort: Effort) -> list[Figure]:
+def flat(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
     """Return how a run compares that slides nearly all of its time, scanned at 100 Hz, and both with the skeleton."""
-    (recipe,) = (one for one in recipes() if one.quick is effort.quick and one.name.startswith("100 Hz"))
-    source = effort.skeleton
+    (recipe,) = (one for one in recipes() if one.quick is extent.quick and one.name.startswith("100 Hz"))
+    source = extent.skeleton
     speeds: list[float] = []
 
     def run_skeleton() -> None:
         if source is not None and (source / "rig.py").exists():
             speeds.append(skeleton_speed(source))
 
-    costs = in_turns(trees, recipe.text, effort.rounds, effort.folder, each_round=run_skeleton)
+    costs = in_turns(trees, recipe.text, extent.rounds, extent.folder, each_round=run_skeleton)
     figures = faster(recipe.name, trees, costs, asked.flat)
     return [*figures, *beside_skeleton(trees, costs, speeds, asked.skeleton, source)]
 
 
-def table2(trees: Trees, asked: Asked, effort: Effort) -> list[Figure]:
+def table2(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
     """Return how Table 2 compares in two jobs, by its time and by its memory."""
-    text = table2_text(trees[0].folder, effort.quick)
-    costs = in_turns(trees, text, effort.rounds, effort.folder, "--jobs", str(JOBS))
-    name = f"Table 2, {JOBS} jobs" + (", a temperature of two compounds" if effort.quick else "")
+    text = table2_text(trees[0].folder, extent.quick)
+    costs = in_turns(trees, text, extent.rounds, extent.folder, "--jobs", str(JOBS))
+    name = f"Table 2, {JOBS} jobs" + (", a temperature of two compounds" if extent.quick else "")
     limit = at_most(asked.table2)
     return [
-        *shorter(name, trees, costs, None if effort.wall else limit),
-        _share(f"{name}: wall", trees, costs, lambda cost: cost.wall_s, limit if effort.wall else None),
+        *shorter(name, trees, costs, None if extent.wall else limit),
+        _share(f"{name}: wall", trees, costs, lambda cost: cost.wall_s, limit if extent.wall else None),
         _share(f"{name}: memory", trees, costs, lambda cost: cost.memory_mb, at_most(1.0)),
         *_spent(name, trees, costs, "MB", lambda cost: cost.memory_mb),
     ]
 
 
-def grosch(trees: Trees, asked: Asked, effort: Effort) -> list[Figure]:
+def grosch(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
     """Return how a master curve compares, most of which is waiting for a chamber."""
-    text = grosch_text(trees[0].folder, effort.quick)
-    costs = in_turns(trees, text, effort.rounds, effort.folder, "--rig", "grosch")
-    name = "grosch" + (", two temperatures, seven speeds" if effort.quick else "")
+    text = grosch_text(trees[0].folder, extent.quick)
+    costs = in_turns(trees, text, extent.rounds, extent.folder, "--rig", "grosch")
+    name = "grosch" + (", two temperatures, seven speeds" if extent.quick else "")
     return shorter(name, trees, costs, at_most(asked.grosch))
 
 
-PROMISES: dict[str, Callable[[Trees, Asked, Effort], list[Figure]]] = {
+PROMISES: dict[str, Callable[[Trees, Asked, Extent], list[Figure]]] = {
     "conditions": conditions, "flat": flat, "table2": table2, "grosch": grosch,
 }  # fmt: skip
 BUILD = "build"
@@ -240,12 +240,12 @@ def main(arguments: Sequence[str]) -> int:
     rounds = given.rounds or (QUICK_ROUNDS if given.quick else ROUNDS)
     results: dict[str, list[Figure]] = {}
     with TemporaryDirectory(prefix="promises-", ignore_cleanup_errors=True) as folder:
-        effort = Effort(rounds, given.quick, given.wall, skeleton, Path(folder))
-        for kind, trees in versions(given, effort.folder):
+        extent = Extent(rounds, given.quick, given.wall, skeleton, Path(folder))
+        for kind, trees in versions(given, extent.folder):
             for name, measure in PROMISES.items():
                 if name in names:
                     print(f"measuring: {kind}, {name}", file=sys.stderr, flush=True)
-                    results[kind] = results.get(kind, []) + measure(trees, ASKED[kind], effort)
+                    results[kind] = results.get(kind, []) + measure(trees, ASKED[kind], extent)
                     print(table({kind: results[kind]}, {}), file=sys.stderr, flush=True)
             if kind == "compiled" and BUILD in names:
                 results[kind] = results.get(kind, []) + build(trees)

@@ -15,7 +15,7 @@ from bench.figures import Figure, Verdict, at_most
 from bench.ladder import recipes
 from bench.promises import (
     ASKED,
-    Effort,
+    Extent,
     beside_skeleton,
     conditions,
     faster,
@@ -53,8 +53,8 @@ def cost(cpu_s: float, wall_s: float = 1.0, memory_mb: float = 100.0, rig_s: flo
     return Cost(cpu_s, cpu_s, wall_s, memory_mb, rig_s)
 
 
-def effort(tmp_path: Path, *, wall: bool = False, skeleton: Path | None = None) -> Effort:
-    return Effort(3, True, wall, skeleton, tmp_path)
+def extent(tmp_path: Path, *, wall: bool = False, skeleton: Path | None = None) -> Extent:
+    return Extent(3, True, wall, skeleton, tmp_path)
 
 
 def by_name(figures: list[Figure]) -> dict[str, Figure]:
@@ -65,7 +65,7 @@ def by_name(figures: list[Figure]) -> dict[str, Figure]:
 def test_conditions_have_to_take_two_fifths_of_the_time_in_plain_python(
     tmp_path: Path, now_s: float, verdict: Verdict
 ) -> None:
-    first, *_ = conditions(trees(cost(10.0), cost(now_s)), ASKED["plain"], effort(tmp_path))
+    first, *_ = conditions(trees(cost(10.0), cost(now_s)), ASKED["plain"], extent(tmp_path))
     assert (first.verdict, first.median) == (verdict, pytest.approx(10.0 / now_s))
     assert len(first.runs) == 3
 
@@ -87,7 +87,7 @@ def test_a_share_is_of_the_earlier_time() -> None:
 @pytest.mark.parametrize("wall", [False, True])
 def test_table2_is_judged_by_its_processor_time_or_by_its_wall_time(tmp_path: Path, wall: bool) -> None:
     two = trees(cost(100.0, wall_s=10.0), cost(24.0, wall_s=9.0))
-    found = table2(two, ASKED["compiled"], effort(tmp_path, wall=wall))
+    found = table2(two, ASKED["compiled"], extent(tmp_path, wall=wall))
     judged = {figure.name: figure.verdict for figure in found if figure.limit is not None}
     time = Verdict.MISSED if wall else Verdict.HOLDS
     assert list(judged.values()) == [time, Verdict.HOLDS]
@@ -96,14 +96,14 @@ def test_table2_is_judged_by_its_processor_time_or_by_its_wall_time(tmp_path: Pa
 
 def test_more_memory_than_before_is_a_miss(tmp_path: Path) -> None:
     two = trees(cost(100.0), cost(1.0, memory_mb=101.0))
-    (missed,) = (figure for figure in table2(two, ASKED["plain"], effort(tmp_path)) if figure.missed)
+    (missed,) = (figure for figure in table2(two, ASKED["plain"], extent(tmp_path)) if figure.missed)
     assert missed.name.endswith("memory, now / before")
 
 
 def test_without_a_skeleton_its_line_gives_the_reason(tmp_path: Path) -> None:
-    found = flat(trees(cost(2.0), cost(1.0)), ASKED["plain"], effort(tmp_path))
+    found = flat(trees(cost(2.0), cost(1.0)), ASKED["plain"], extent(tmp_path))
     assert (found[-1].verdict, found[-1].note) == (Verdict.UNAVAILABLE, "no --skeleton FOLDER was given")
-    found = flat(trees(cost(2.0), cost(1.0)), ASKED["plain"], effort(tmp_path, skeleton=tmp_path))
+    found = flat(trees(cost(2.0), cost(1.0)), ASKED["plain"], extent(tmp_path, skeleton=tmp_path))
     assert "rig.py" in found[-1].note
 
 
@@ -120,7 +120,7 @@ def test_the_skeleton_runs_from_its_folder(tmp_path: Path) -> None:
         "    def run(self, ticks, dt, loads):\n        sum(range(20 * ticks))\n",
         encoding="utf-8",
     )
-    found = by_name(flat(trees(cost(2.0), cost(1.0)), ASKED["plain"], effort(tmp_path, skeleton=tmp_path)))
+    found = by_name(flat(trees(cost(2.0), cost(1.0)), ASKED["plain"], extent(tmp_path, skeleton=tmp_path)))
     assert len(found["skeleton"].runs) == 3 and found["skeleton"].least > 0.0
 
 
