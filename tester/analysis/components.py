@@ -108,15 +108,17 @@ def by_film(dry: ConditionResult, film: ConditionResult, slope: Slope) -> ByFilm
 
 
 def mean_of(values: Sequence[PartValue]) -> PartValue:
-    """Return the mean of values of one rig and compound, weighted by 1 / u^2; NaN where none has an uncertainty above
-    0.
+    """Return the mean of values of one rig and compound; NaN where none has an uncertainty above 0.
 
-    Common errors do not average out.
+    Weighted by 1 / (u^2 + d^2), d the standard deviation by which conditions truly differ, where they scatter by more
+    than their uncertainties (DerSimonian and Laird, Controlled Clinical Trials 7, 1986, 177). The mean is that of such
+    conditions, so d counts among its uncertainties. Common errors do not average out.
     """
     certain = [value_of_rig for value_of_rig in values if isfinite(value_of_rig.value) and value_of_rig.standard > 0.0]
     if not certain:
         return PartValue(NAN, ((NAN, inf),))
-    weights = [1.0 / value_of_rig.standard**2 for value_of_rig in certain]
+    apart = between(certain)
+    weights = [1.0 / (value_of_rig.standard**2 + apart**2) for value_of_rig in certain]
     shares = [weight / sum(weights) for weight in weights]
     common: dict[str, tuple[float, float]] = {}
     for value_of_rig, share in zip(certain, shares, strict=True):
@@ -124,7 +126,22 @@ def mean_of(values: Sequence[PartValue]) -> PartValue:
             so_far, least = common.get(name, (0.0, inf))
             common[name] = so_far + share * u, min(least, df)
     value = sum(share * value_of_rig.value for value_of_rig, share in zip(certain, shares, strict=True))
-    independent = tuple(
+    independent = [
         (share * u, df) for value_of_rig, share in zip(certain, shares, strict=True) for u, df in value_of_rig.own
-    )
-    return PartValue(value, independent, common)
+    ]
+    if apart > 0.0:
+        independent.append((apart * sqrt(sum(share**2 for share in shares)), len(certain) - 1.0))
+    return PartValue(value, tuple(independent), common)
+
+
+def between(values: Sequence[PartValue]) -> float:
+    """Return the standard deviation by which values truly differ, 0 where their uncertainties explain their scatter.
+
+    ``values``: at least one, each with an uncertainty above 0.
+    """
+    weights = [1.0 / one.standard**2 for one in values]
+    total = sum(weights)
+    mean = sum(weight * one.value for weight, one in zip(weights, values, strict=True)) / total
+    scatter = sum(weight * (one.value - mean) ** 2 for weight, one in zip(weights, values, strict=True))
+    freedom = total - sum(weight**2 for weight in weights) / total
+    return sqrt(max(0.0, scatter - (len(values) - 1)) / freedom) if len(values) > 1 else 0.0

@@ -71,7 +71,9 @@ class Term:
     ``channel``: the bound is a share of its mean; for SIZE and LOSS the speed computed from the diameter. ``factor``
     multiplies the sensitivity. ``common``: rig (the same in all conditions measured on it), piece (in all on the
     mounted piece), "" (independent). ``setting`` and ``factor_setting``: names under which a recipe's metadata replaces
-    bound and factor, as ``uncertainty.<name>``.
+    bound and factor, as ``uncertainty.<name>``. ``whole_at``: of FRICTION and NORMAL, the force in N from which the
+    bound counts whole; below it the bound shrinks with the force (a cell after its tare is right at 0 N). 0: whole at
+    any force.
     """
 
     name: str
@@ -86,6 +88,7 @@ class Term:
     common: str = "rig"
     setting: str = ""
     factor_setting: str = ""
+    whole_at: float = 0.0
 
     def __post_init__(self) -> None:
         """Raise ValueError for an unknown distribution, or a number out of range."""
@@ -93,6 +96,8 @@ class Term:
             raise ValueError(f"{self.name}: {self.distribution!r} is none of {', '.join(SPREADS)}")
         if not (isfinite(self.bound) and self.bound >= 0.0 and isfinite(self.factor) and self.df > 0.0):
             raise ValueError(f"{self.name}: bound {self.bound}, factor {self.factor}, degrees of freedom {self.df}")
+        if self.whole_at and not (self.whole_at > 0.0 and self.acts in (Acts.FRICTION, Acts.NORMAL)):
+            raise ValueError(f"{self.name}: whole_at {self.whole_at} N (expected 0 or more, of a force)")
 
     @property
     def standard(self) -> float:
@@ -189,6 +194,9 @@ def _contribution(term: Term, at: BudgetPoint) -> Contribution:
         standard *= at.speed(term.channel) if term.channel else 1.0
     elif term.channel and term.acts is not Acts.SIZE:
         standard *= abs(at.means.get(term.channel, NAN))
+    if term.whole_at:
+        force_n = abs(at.normal_n * at.mu) if term.acts is Acts.FRICTION else abs(at.normal_n)
+        standard *= min(1.0, force_n / term.whole_at)
     per_unit = sensitivity(term, at)
     return contribution(
         term.name,

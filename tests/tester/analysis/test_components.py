@@ -8,7 +8,7 @@ from math import exp, hypot, inf, isnan, sqrt
 import numpy as np
 import pytest
 
-from tester.analysis.components import RUBBER_K, SENSITIVITY, PartValue, by_film, mean_of
+from tester.analysis.components import RUBBER_K, SENSITIVITY, PartValue, between, by_film, mean_of
 from tester.analysis.kelvin import UNKNOWN, Slope
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import ConditionStatus
@@ -113,7 +113,26 @@ def test_what_conditions_have_in_common_does_not_average_out() -> None:
 
 
 def test_the_mean_counts_what_is_certain() -> None:
-    known = [PartValue(0.5, ((0.01, inf),)), PartValue(0.8, ((0.1, inf),))]
+    known = [PartValue(0.5, ((0.01, inf),)), PartValue(0.6, ((0.1, inf),))]
     found = mean_of([*known, PartValue(9.0, ((float("nan"), 1.0),))])
-    assert found.value == pytest.approx((0.5 * 100.0 + 0.8) / 101.0, rel=1e-12)
+    assert found.value == pytest.approx((0.5 * 100.0 + 0.6) / 101.0, rel=1e-12)
     assert isnan(mean_of([]).value)
+
+
+def test_conditions_that_truly_differ_weigh_alike_in_their_mean() -> None:
+    apart = [PartValue(value, ((0.001 * u, inf),)) for value, u in ((0.1, 1.0), (0.2, 2.0), (0.3, 4.0))]
+    found = mean_of(apart)
+    assert found.value == pytest.approx(0.2, abs=1e-4)
+    assert found.standard == pytest.approx(between(apart) / sqrt(3.0), rel=1e-3)
+    assert found.expanded == pytest.approx(4.3 * found.standard, rel=1e-2)  # three conditions
+
+
+def test_what_conditions_differ_by_is_found_beside_their_uncertainties() -> None:
+    random = np.random.default_rng(4)
+    drawn = [PartValue(0.1 + float(off), ((0.01, inf),)) for off in random.normal(0.0, np.hypot(0.03, 0.01), 2000)]
+    assert between(drawn) == pytest.approx(0.03, rel=0.05)
+
+
+def test_a_scatter_that_uncertainties_explain_is_no_difference() -> None:
+    assert between([PartValue(0.10, ((0.01, inf),)), PartValue(0.11, ((0.01, inf),))]) == 0.0
+    assert between([PartValue(0.10, ((0.01, inf),))]) == 0.0

@@ -116,7 +116,8 @@ CREATE TABLE budget_term (
     channel TEXT NOT NULL DEFAULT '',
     common TEXT NOT NULL DEFAULT 'rig',
     setting TEXT NOT NULL DEFAULT '',
-    factor_setting TEXT NOT NULL DEFAULT ''
+    factor_setting TEXT NOT NULL DEFAULT '',
+    whole_at REAL
 );
 CREATE TABLE known_slope (
     position INTEGER PRIMARY KEY,

@@ -8,7 +8,7 @@ from math import isnan, radians, sqrt
 import pytest
 
 from tester.analysis.kelvin import UNKNOWN, Slope
-from tester.analysis.terms import BudgetPoint, contributions_of, with_settings
+from tester.analysis.terms import Acts, BudgetPoint, contributions_of, with_settings
 from tester.kinds.specimen_on_track.budget import TERMS, instruments_budget
 
 MU, LOAD_N, TRACK_M_S, PER_KELVIN = 0.9, 20.0, 0.2, -0.03
@@ -16,7 +16,7 @@ AT = BudgetPoint(MU, LOAD_N, TRACK_M_S, {"load_n": LOAD_N, "sliding_m_s": TRACK_
 EVEN = 1.0 / sqrt(3.0)
 
 EXPECTED = {
-    "cell linearity": 0.2 * EVEN / LOAD_N,
+    "cell linearity": 0.01 * MU * EVEN,  # 18 N are below a tenth of the range
     "cell zero": 0.05 * EVEN / LOAD_N,
     "weights": MU * 0.001 * EVEN,
     "axis misalignment": (1.0 + MU * MU) * radians(0.2) / sqrt(2.0),
@@ -61,6 +61,19 @@ def test_an_unknown_sensitivity_is_in_what_is_expected() -> None:
     found = {one.name: one.standard for one in instruments_budget(MU, LOAD_N, TRACK_M_S, UNKNOWN).contributions}
     assert found["temperature sensitivity"] == pytest.approx(MU * 0.026 * EVEN)
     assert found["thermometer"] == 0.0
+
+
+@pytest.mark.parametrize(("mu", "bound_n"), [(0.03, 0.006), (0.99, 0.198), (1.0, 0.2), (2.0, 0.2)])
+def test_a_tared_cell_is_off_in_proportion_to_a_small_force(mu: float, bound_n: float) -> None:
+    at = replace(AT, mu=mu)
+    found = next(one for one in contributions_of(TERMS, at) if one.name == "cell linearity")
+    assert found.standard == pytest.approx(bound_n * EVEN / LOAD_N, rel=1e-9)
+
+
+def test_only_a_force_has_a_size_from_which_a_bound_counts_whole() -> None:
+    (cell,) = (one for one in TERMS if one.name == "cell linearity")
+    with pytest.raises(ValueError, match=r"cell linearity: whole_at 20\.0 N"):
+        replace(cell, acts=Acts.TEMPERATURE)
 
 
 def test_without_a_load_there_is_no_budget() -> None:
