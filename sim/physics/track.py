@@ -43,6 +43,7 @@ class TrackContact:
     expansion: Annotated[float, "mm/K"] = 0.001  # [A] of the specimen: 2e-4 per kelvin, 6 mm
     wear: Annotated[float, "mm/m"] = 0.0005  # [A] height that the specimen loses over its sliding distance
     runout: Annotated[float, "mm"] = 0.02  # [A] of a disc, to either side
+    weights: Annotated[float, "1"] = 0.0  # greatest error of a session's weights, as a share
     area: Annotated[float, "mm2"] = 100.0  # [A] nominal, of the specimen on the track: makes a pressure of the load
     wet: Annotated[float, "1"] = 0.6  # [A] share of the dry friction, by a law that does not know adhesion
     talc: Annotated[float, "1"] = 0.5  # [A] the same
@@ -56,7 +57,7 @@ class TrackContact:
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
         shares = {"static_excess", "wet", "talc", "wet_adhesion", "talc_adhesion", "talc_hysteresis",
-                  "wear", "runout", "expansion"}  # fmt: skip
+                  "weights", "wear", "runout", "expansion"}  # fmt: skip
         refuse(self, shares, signed={"pressure_exponent"})
         if self.touch >= self.lift_travel:
             raise ValueError("TrackContact.touch must be below lift_travel: raised, nothing touches")
@@ -161,6 +162,8 @@ class TrackSensors:
     force_rms: Annotated[float, "N"] = 0.02
     force_zero: Annotated[float, "N"] = 0.5  # greatest offset of a session: what the tare takes off
     force_drift: Annotated[float, "N/K"] = 0.005  # greatest, of the air's temperature against ambient
+    force_linearity: Annotated[float, "N"] = 0.0  # greatest of a session: the cell's curve off its line
+    misalignment: Annotated[float, "deg"] = 0.0  # greatest of a session: of the cell's axis against the track
     height_rms: Annotated[float, "mm"] = 0.003
     height_zero: Annotated[float, "mm"] = 0.05  # greatest offset of a session
     height_drift: Annotated[float, "mm/K"] = 0.0005  # greatest, of the air's temperature against ambient

@@ -13,7 +13,7 @@ Every public attribute is the truth.
 from __future__ import annotations
 
 from dataclasses import replace
-from math import copysign, exp, sin
+from math import copysign, exp, radians, sin
 from typing import Final
 
 from sim.noise import NormalStream, StickSlip, normal, uniforms
@@ -28,6 +28,8 @@ DISC_RADIUS_MM: Final = 60.0
 SPECIMEN_SIGMA: Final = 0.03
 REPEAT_SIGMA: Final = 0.02
 """Relative standard deviation of the friction from specimen to specimen, and of one repeat [A]."""
+CUBIC: Final = 6.0 * 3.0**0.5
+"""Makes the largest value of x (1 - x) (1 - 2 x) between 0 and 1 one."""
 _SHEDDING_OVER: Final = 37.0
 """Static lengths after which the static excess is 0 to the last bit: exp(-37) is less than 2^-53."""
 
@@ -40,11 +42,11 @@ class TrackPlant:
     """
 
     __slots__ = (
-        "_air", "_drift_n_k", "_dry", "_height_drift_mm_k", "_height_noise", "_height_zero_mm", "_law", "_noise",
-        "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m", "_specimen", "_stick_slip", "_zero_n", "air_c",
-        "arm_n", "block_mm", "compound", "deaf", "force_n", "grip", "ground_m", "height_mm", "holder_mu", "hung_n",
-        "interface", "load_n", "mu", "parameters", "power_w", "setting", "slid_m", "slip_m_s", "specimen_c", "way_m",
-        "weights_n", "worn_mm",
+        "_air", "_curve_n", "_drift_n_k", "_dry", "_height_drift_mm_k", "_height_noise", "_height_zero_mm", "_law",
+        "_noise", "_place", "_pyrometer", "_repeat", "_seed", "_since_rest_m", "_specimen", "_stick_slip", "_tilt",
+        "_weights", "_zero_n", "air_c", "arm_n", "block_mm", "compound", "deaf", "force_n", "grip", "ground_m",
+        "height_mm", "holder_mu", "hung_n", "interface", "load_n", "mu", "parameters", "power_w", "setting", "slid_m",
+        "slip_m_s", "specimen_c", "way_m", "weights_n", "worn_mm",
     )  # fmt: skip
 
     def __init__(self, parameters: TrackParameters, seed: int) -> None:
@@ -60,6 +62,11 @@ class TrackPlant:
         )
         self._air = TemperatureSensor(s.air_time, noise * s.air_rms, noise * s.air_bias * air_bias, unused)
         self._zero_n, self._drift_n_k = noise * s.force_zero * zero, noise * s.force_drift * drift
+        tilt, weights, size, cubic = uniforms(4, seed, "session force")
+        self._tilt = noise * radians(s.misalignment) * tilt
+        self._weights = 1.0 + noise * p.contact.weights * weights
+        linearity_n = noise * s.force_linearity * size
+        self._curve_n = (1.0 - abs(cubic)) * linearity_n, cubic * linearity_n
         height_zero, height_drift = uniforms(2, seed, "session height")
         self._height_zero_mm = noise * s.height_zero * height_zero
         self._height_drift_mm_k = noise * s.height_drift * height_drift
@@ -125,7 +132,7 @@ class TrackPlant:
         """Put weights on the arm, N (including the arm's own weight if it is not balanced). Raises ValueError."""
         if not 0.0 <= weights_n < float("inf"):
             raise ValueError(f"weights must be finite and at least 0 N, not {weights_n!r}")
-        self.weights_n = weights_n
+        self.weights_n = self._weights * weights_n
 
     def cover(self, surface: str) -> None:
         """Cover the track with a surface, clean and dry; it matters to laws of materials.
@@ -277,12 +284,21 @@ class TrackPlant:
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return the cell's present readings: the tangential force in N as the first of four channels."""
         s = self.parameters.sensors
-        seen_n = 0.0 if self.deaf else self.force_n
+        seen_n = 0.0 if self.deaf else self.force_n + self._tilt * self.load_n
+        if s.force_linearity:
+            seen_n += self._bent((seen_n + self.hung_n) / s.force_range)
         seen_n += self.hung_n + self._zero_n + self._drift_n_k * (self.air_c - self.parameters.ambient)
         rms_n = self.parameters.noise * s.force_rms
         if rms_n > 0.0:
             seen_n += rms_n * self._noise.next()
         return min(max(seen_n, -s.force_range), s.force_range), 0.0, 0.0, 0.0
+
+    def _bent(self, share: float) -> float:
+        """Return by how much the cell is off its line, N, at a share of its range: a quadratic and a cubic curve."""
+        x = min(abs(share), 1.0)
+        quadratic_n, cubic_n = self._curve_n
+        off_n = x * (1.0 - x) * (4.0 * quadratic_n + CUBIC * (1.0 - 2.0 * x) * cubic_n)
+        return copysign(1.0, share) * off_n
 
     def height_measured(self) -> float:
         """Return the present reading of the arm's height, mm."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
-from math import exp
+from math import exp, radians
 from pathlib import Path
 
 import pytest
@@ -14,7 +14,7 @@ from sim.machines.specimen_on_track.plant import TrackPlant
 from sim.physics import tabulated, track
 from sim.physics.laws import LawSetting, make, with_parts
 from sim.physics.materials import Rubber, Surface
-from sim.physics.track import TrackContact, TrackParameters
+from sim.physics.track import TrackContact, TrackParameters, TrackSensors
 from sim.physics.wlf import PoleError, WlfBell, WlfBellParameters
 from tests.sim.physics.materials_example import Shelf
 
@@ -301,3 +301,36 @@ def test_a_lift_that_never_leaves_the_track_is_refused() -> None:
 def test_a_rubber_that_is_not_known_is_refused_with_those_that_are() -> None:
     with pytest.raises(ValueError, match=r"no rubber 'XY'.*known: SBR, NR, NBR, ABR, INR, butyl"):
         lowered(compound="XY")
+
+
+def test_a_session_has_its_own_weights_within_the_greatest_error() -> None:
+    hung = [TrackPlant(TrackParameters(contact=TrackContact(weights=0.01)), seed) for seed in range(20)]
+    for plant in hung:
+        plant.put_on(10.0)
+    off = [plant.weights_n / 10.0 - 1.0 for plant in hung]
+    assert max(map(abs, off)) <= 0.01 and min(off) < -0.003 < 0.003 < max(off)
+
+
+def test_a_cells_curve_is_right_at_zero_and_within_its_greatest_error() -> None:
+    off: list[float] = []
+    for seed in range(20):
+        sensors = TrackSensors(force_rms=0.0, force_zero=0.0, force_drift=0.0, force_linearity=0.2)
+        plant = TrackPlant(TrackParameters(sensors=sensors), seed)
+        assert plant.forces_measured(0.0)[0] == 0.0
+        for force_n in (-150.0, -2.0, 2.0, 20.0, 50.0, 100.0, 150.0, 200.0):
+            plant.force_n = force_n
+            off_n = plant.forces_measured(0.0)[0] - force_n
+            assert abs(off_n) <= min(0.2, 0.0104 * abs(force_n)) + 1e-12
+            off.append(off_n)
+    assert max(map(abs, off)) > 0.1
+
+
+def test_a_cell_askew_shows_some_of_the_load() -> None:
+    sensors = TrackSensors(force_rms=0.0, force_zero=0.0, force_drift=0.0, misalignment=0.2)
+    shown: list[float] = []
+    for seed in range(20):
+        plant = TrackPlant(TrackParameters(sensors=sensors), seed)
+        assert plant.forces_measured(0.0)[0] == 0.0
+        plant.load_n = 20.0
+        shown.append(plant.forces_measured(0.0)[0])
+    assert 0.5 * radians(0.2) * 20.0 < max(map(abs, shown)) <= radians(0.2) * 20.0
