@@ -3,8 +3,7 @@
 The recipe `pin-on-disc` on its simulated rig, over seeds, with all noise and scatter. Wet, the twin keeps a share of
 the dry friction (`sim.contact.wet`): as shipped in every other seed, others between. `tester components` has to find
 it, dry less wet, within the interval that it states, for both compounds, in 16 of 20 seeds; and the interval has to be
-narrow. Then the recipe `greta` with the law `greta` in the twin, which knows its parts: wet, it keeps the hysteresis,
-and the mean share has to hold the law's, at the temperatures that were measured, in 18 of 20 seeds.
+narrow. The recipe `greta`, whose law knows its parts, is judged by tests.campaigns.greta.
 """
 
 from __future__ import annotations
@@ -18,17 +17,14 @@ from collections.abc import Iterator
 from functools import partial
 from multiprocessing import get_context
 from pathlib import Path
-from statistics import fmean, median
+from statistics import median
 from typing import NamedTuple
 
 import recipes
-from sim.physics.greta import greta
 from tester.cli.main import invoke
-from tester.inputs.materials.library import Library
 from tester.results.components_table import FilmPair, SharesMean, film_pairs, means_of
 from tester.results.run_results import results_of
 from tester.store.run_reader import RunReader
-from tests.recipes.asked import asked_by
 
 SEEDS, SAMPLE_SEEDS = 20, 3
 SHARES = (0.6, 0.35, 0.6, 0.8)
@@ -38,11 +34,6 @@ HELD = 0.8
 WIDEST = 0.07
 """Most that the median of the expanded uncertainties of the mean shares may be [A]: a wide one would hold anything."""
 SPEEDS = ("0.05 m/s, 0.1 m/s, 0.2 m/s, 0.3 m/s, 0.5 m/s, 1 m/s", "0.05 m/s, 0.1 m/s, 0.2 m/s")
-GRETA_HELD = 0.9
-"""Share of seeds that is asked of the recipe `greta`: 18 of 20."""
-GRETA_SET = asked_by("greta")[1]
-GRETA = tuple(part for key in GRETA_SET for part in ("--set", key))
-GRETA_AREA_MM2 = next(float(key.partition("=")[2]) for key in GRETA_SET if key.startswith("sim.contact.area"))
 
 
 class Found(NamedTuple):
@@ -66,26 +57,6 @@ def measure(seed: int, *, sample: bool) -> list[Found]:
     truth = SHARES[seed % len(SHARES)]
     pairs = pairs_of("pin-on-disc", seed, ("--set", f"sim.contact.wet={truth:g}"), SPEEDS if sample else ("", ""))
     return [found_of(seed, pairs, mean, truth) for mean in means_of(pairs)]
-
-
-def measure_greta(seed: int, *, sample: bool) -> list[Found]:
-    """Run the recipe `greta` (a sample: its first compound); the truth is the law's mean share."""
-    changes = [("  - compound: tread soft\n", "")] if sample else []
-    pairs = pairs_of("greta", seed, GRETA, *changes)
-    library = Library.beside()
-    found: list[Found] = []
-    for mean in means_of(pairs):
-        surface = library.surface("anti-slip tape")
-        law = greta(library.rubber(mean.compound), surface, {"area": GRETA_AREA_MM2})
-        shares: list[float] = []
-        for one in pairs:
-            held = one.dry.info.setpoint
-            if one.dry.info.compound == mean.compound:
-                contact_c = one.dry.result.measured["contact_c"]
-                parts = law.components(contact_c, held.number("load"), held.number("track_speed"))
-                shares.append(parts.hysteresis / sum(parts))
-        found.append(found_of(seed, pairs, mean, fmean(shares)))
-    return found
 
 
 def pairs_of(name: str, seed: int, options: tuple[str, ...], *changes: tuple[str, str]) -> list[FilmPair]:
@@ -136,16 +107,11 @@ def main(arguments: list[str] | None = None) -> int:
     seeds = SAMPLE_SEEDS if read.sample else read.seeds
     with get_context("spawn").Pool(read.jobs) as pool:
         found = [one for own in pool.map(partial(measure, sample=read.sample), range(seeds), 1) for one in own]
-        few = 1 if read.sample else seeds
-        by_greta = [one for own in pool.map(partial(measure_greta, sample=read.sample), range(few), 1) for one in own]
-    for one in (*found, *by_greta):
+    for one in found:
         told = f"share {one.share:.4f} ± {one.expanded:.4f}, put in {one.truth:.3g}"
         print(f"     seed {one.seed}, {one.compound}: {told}; conditions {one.rows[0]} of {one.rows[1]}")
     missed = 0
-    held = sum(all(one.held for one in by_greta if one.seed == seed) for seed in range(few))
-    least = -int(-GRETA_HELD * few // 1)
-    of_greta = (f"greta: seeds whose intervals hold the law's share: {held} of {few} (asked: {least})", held >= least)
-    for text, met in (*figures(found, seeds), of_greta):
+    for text, met in figures(found, seeds):
         missed += not met
         print(f"{'ok  ' if met else 'MISS'} {text}", flush=True)
     print("every figure met" if not missed else f"{missed} missed")
