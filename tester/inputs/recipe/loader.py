@@ -14,6 +14,7 @@ from tester.analysis.terms import PREFIX, Term
 from tester.base.source import InvalidSource, Problem, Tree, read_tree
 from tester.base.units import shown
 from tester.base.validation import problems_of
+from tester.inputs.recipe.measured_specimens import hardness_doubts
 from tester.inputs.recipe.pressures import with_area, with_loads
 from tester.inputs.recipe.recipe_part import RecipePart
 from tester.inputs.recipe.recipe_schema import Recipe
@@ -74,7 +75,7 @@ def load_checked(source: Path | str, rig: Rig, part: RecipePart, name: str | Non
         problems += part.outlasted(recipe, tree, rig)
     if recipe is None or problems:
         raise InvalidSource(problems)
-    return LoadedRecipe(recipe, tree, tuple(part.doubts(recipe, tree, rig)))
+    return LoadedRecipe(recipe, tree, (*part.doubts(recipe, tree, rig), *hardness_doubts(recipe, tree)))
 
 
 def _settings(recipe: Recipe, tree: Tree, terms: Sequence[Term]) -> Iterator[Problem]:

@@ -13,6 +13,7 @@ from typing import Final
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import Press
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Turn
+from tester.kinds.wheel_on_belt.recipe.measured_wheels import off_place_mm
 from tester.kinds.wheel_on_belt.recipe.twin_law import CLEAR_SHARE, LEAST_N
 from tester.machine.activity import MoveFailedError
 from tester.machine.motions import Power, Sequence
@@ -146,7 +147,7 @@ class FirstContact:
             p = ctx.rig.interlocks
             share, creep = p.first_contact_sweep, p.first_contact_creep_m_s
             slow, fast = p.first_contact_slow_m_s, p.first_contact_fast_m_s
-            off_mm = 0.5 * share * ctx.readings.diameter_mm + p.first_contact_place_mm
+            off_mm = off_place_mm(ctx.rig, ctx.readings.diameter_mm)
             self.moves = Sequence(
                 Power(True), Lift(), Turn(slow, slow), Touch(p.first_contact_load_n, off_mm),
                 SpeedSweep(slow, share * slow + creep), SpeedSweep(fast, share * fast + creep),

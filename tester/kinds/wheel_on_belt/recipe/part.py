@@ -25,6 +25,7 @@ from tester.kinds.wheel_on_belt.recipe.describe import WheelDescription
 from tester.kinds.wheel_on_belt.recipe.estimate import WheelEstimator
 from tester.kinds.wheel_on_belt.recipe.expand import expand
 from tester.kinds.wheel_on_belt.recipe.limits import limit_problems
+from tester.kinds.wheel_on_belt.recipe.measured_wheels import diameter_doubts, diameter_problems
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelPlan
 from tester.kinds.wheel_on_belt.recipe.references import reference_problems
 from tester.kinds.wheel_on_belt.recipe.remaining import remaining
@@ -146,12 +147,17 @@ class WheelPart(WheelDescription):
         return not rig.simulated or RigConfig.of(rig).sim.friction_model in MODEL_NAMES
 
     def outlasted(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield conditions that each wear a wheel beyond ``wheel.replace_after``."""
+        """Yield conditions that each wear a wheel beyond ``wheel.replace_after``, and measured wheels of another size.
+        """
         yield from wear_problems(for_wheels(recipe), tree, RigConfig.of(rig))
+        yield from diameter_problems(RigConfig.of(rig), recipe, tree)
 
     def doubts(self, recipe: Recipe, tree: Tree, rig: Rig) -> Iterator[Problem]:
-        """Yield the compounds whose law on the simulated wheel is assumed, or has too little friction."""
+        """Yield the compounds whose law on the simulated wheel is assumed, or has too little friction, and measured
+        diameters beyond the uncertainty of the believed one.
+        """
         yield from twin_doubts(RigConfig.of(rig), recipe, tree)
+        yield from diameter_doubts(RigConfig.of(rig), recipe, tree)
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> WheelEstimator:
         """Return the estimator of a rig."""
