@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Sequence
+from datetime import datetime
 from math import floor, isfinite, log10
 from typing import Final
 
@@ -49,6 +50,11 @@ def rough_duration(seconds: float) -> str:
         return f"{seconds:.0f} s"
     minutes = round(seconds / 60.0)
     return f"{minutes} min" if minutes < 100 else f"{minutes // 60} h {minutes % 60:02d} min"
+
+
+def local_hour(utc: str) -> str:
+    """Return a time, ISO 8601 with a time zone, as weekday, hour and minute in this computer's zone; "" for none."""
+    return datetime.fromisoformat(utc).astimezone().strftime("%a %H:%M") if utc else ""
 
 
 def about(seconds: float) -> str:

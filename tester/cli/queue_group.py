@@ -48,11 +48,17 @@ speed_option = click.option(
 @click.option("--note", "notes", default="", metavar="TEXT", help="Note for the run's record.")
 @click.option("--after", default="done,short", show_default=True, metavar="ENDS",
               help="Ends after which the queue continues: done, short, failed.")  # fmt: skip
+@click.option("--copies", default=1, show_default=True, metavar="N", type=click.IntRange(1, 50),
+              help="Add it N times; on a simulated rig each has the next seed.")  # fmt: skip
+@click.option("--answer-within", "within", default="", metavar="TIME",
+              help="Stop the item once a question has waited so long, e.g. 2 h, with the guard closed.")  # fmt: skip
+@click.option("--unanswered", type=click.Choice(["stand", "skip"]), default="stand", show_default=True,
+              help="What then: the queue stands, or goes on if the next item asks for no person.")  # fmt: skip
 @connect_option
 @json_option
 def add(
     recipe: str, overrides: tuple[str, ...], seed: int, speed: float | None, yes: bool, operator: str, notes: str,
-    after: str, address: str, as_json: bool,
+    after: str, copies: int, within: str, unanswered: Literal["stand", "skip"], address: str, as_json: bool,
 ) -> int:  # fmt: skip
     """Check RECIPE (a file, or the name of a packaged recipe), freeze it, and add it to the end of the queue."""
     import recipes
@@ -67,21 +73,40 @@ def add(
         _end(word.strip()) for word in after.split(",") if word.strip()
     )
     where = recipe if packaged else str(path.absolute())
-    action = QueueAdd(where, "", overrides, seed, speed, yes, operator, notes, ends)
+    within_s = _within_s(within, unanswered)
+    action = QueueAdd(where, "", overrides, seed, speed, yes, operator, notes, ends, copies, within_s, unanswered)
 
     async def work(client: Client) -> None:
         result = await client.command(action, within_s=ADD_S)
-        number = result["id"] if isinstance(result, dict) else None
         if as_json:
             print_json(result)
-        else:
-            click.echo(f"item {number} added")
+        elif isinstance(result, dict) and isinstance(numbers := result["ids"], list):
+            words = f"item {numbers[0]}" if len(numbers) == 1 else f"items {numbers[0]} to {numbers[-1]}"
+            click.echo(f"{words} added")
 
     return _carry_out(address, work)
 
 
 ADD_S = 150.0
 """Time limit of adding, s: a plan of 100,000 conditions takes some seconds, other items may be checked first [A]."""
+
+
+def _within_s(text: str, unanswered: str) -> float | None:
+    """Return the time limit of a question, s; None without one."""
+    from tester.base.units import UnitError, parse
+    from tester.service.commands import LEAST_WAIT_S, MOST_WAIT_S
+
+    if not text:
+        if unanswered == "skip":
+            raise click.UsageError("--unanswered skip needs --answer-within: how long does a question wait?")
+        return None
+    try:
+        within_s = parse(text, "s")
+    except UnitError as error:
+        raise click.UsageError(f"--answer-within: {error}") from error
+    if not LEAST_WAIT_S <= within_s <= MOST_WAIT_S:
+        raise click.UsageError(f"--answer-within {text}: expected 1 min to 7 days, so that a person can be called")
+    return within_s
 
 
 def _end(word: str) -> Literal["done", "short", "failed"]:
@@ -143,13 +168,20 @@ def drop(item: int, address: str) -> int:
 @command()
 @click.option("--agree", multiple=True, metavar="ITEM", type=click.IntRange(1),
               help="Item that runs although something changed since it was added. May be given again.")  # fmt: skip
+@click.option("--until", default="", metavar="HH:MM",
+              help="Begin no item that may last beyond this time; the queue then stands.")  # fmt: skip
 @take_option
 @connect_option
-def start(agree: tuple[int, ...], take: bool, address: str) -> int:
+def start(agree: tuple[int, ...], until: str, take: bool, address: str) -> int:
     """Start the queue: its items run one after another, each after evidence about the rig."""
+    from tester.queue.check import time_of_day
     from tester.service.commands import QueueStart
 
-    return _edit(address, lambda _revision: QueueStart(agree), control=True, take=take)
+    try:
+        clock_text = time_of_day(until).strftime("%H:%M") if until else ""
+    except ValueError as error:
+        raise click.UsageError(f"--until: {error}") from error
+    return _edit(address, lambda _revision: QueueStart(agree, clock_text), control=True, take=take)
 
 
 @command()

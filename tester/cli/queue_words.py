@@ -3,19 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from datetime import datetime
 from typing import TYPE_CHECKING
 
-from tester.base.words import counted, rough_duration
+from tester.base.words import counted, local_hour, rough_duration
 
 if TYPE_CHECKING:
     from tester.queue.check import NightCheck
     from tester.queue.view import ItemView, QueueView
-
-
-def local(utc: str) -> str:
-    """Return a time as weekday, hour and minute in this computer's zone; "" for none."""
-    return datetime.fromisoformat(utc).astimezone().strftime("%a %H:%M") if utc else ""
 
 
 def queue_lines(view: QueueView) -> Iterator[str]:
@@ -26,6 +20,8 @@ def queue_lines(view: QueueView) -> Iterator[str]:
     if view.end_utc:
         start = "" if view.going else ", if it starts now"
         yield f"end      {_expected(view.end_utc, view.end_low_utc, view.end_high_utc)}{start}"
+    if view.until_utc:
+        yield f"until    {local_hour(view.until_utc)}: no item begins that may last longer"
 
 
 def _item_line(item: ItemView) -> str:
@@ -37,16 +33,18 @@ def _item_line(item: ItemView) -> str:
     if item.end_utc:
         what += f", ends {_expected(item.end_utc, item.end_low_utc, item.end_high_utc)}"
     asks = f", asks {counted(len(item.asks), 'time')}" if item.asks else ""
+    if item.asks and item.unanswered is not None:
+        asks += f", {item.unanswered.words()}"
     return f"{what}{asks}, added by {item.by}" + (f": {item.reason}" if item.reason else "")
 
 
 def _expected(at: str, low: str, high: str) -> str:
-    return f"{local(at)} ({local(low)} to {local(high)})"
+    return f"{local_hour(at)} ({local_hour(low)} to {local_hour(high)})"
 
 
 def check_lines(found: NightCheck) -> Iterator[str]:
     """Yield the night check in lines."""
-    yield f"window   {local(found.from_utc)} to {local(found.to_utc)}"
+    yield f"window   {local_hour(found.from_utc)} to {local_hour(found.to_utc)}"
     if found.standing:
         yield f"queue    {found.standing}; the check counts from a start at the window's begin"
     alone = _expected(found.alone_until_utc, found.alone_low_utc, found.alone_high_utc)
@@ -58,6 +56,6 @@ def check_lines(found: NightCheck) -> Iterator[str]:
             f"item {item} before item {before}" if before else f"item {item} to the end"
             for item, before in found.better.moves
         )
-        until = local(found.better.alone_until_utc)
+        until = local_hour(found.better.alone_until_utc)
         yield f"order    {moves} would run alone until {until} ({rough_duration(found.better.gain_s)} longer)"
     yield "result   " + ("runs alone to the end of the window" if found.covered else "does not fill the window alone")

@@ -40,6 +40,11 @@ def reached(due_s: float, now_s: float, most_s: float) -> bool:
     return not now_s < due_s <= now_s + most_s
 
 
+def seconds_of(utc: str) -> float:
+    """Return a time in ISO 8601 text as s since 1970."""
+    return datetime.fromisoformat(utc).timestamp()
+
+
 @dataclass(slots=True)
 class LanePause:
     """The wait of an address after failed attempts."""
@@ -171,9 +176,10 @@ class NoticeDispatch:
         if question is not None:
             todo, by = question.notice.what, f"now: it waits since {local_text(question.notice.since_utc, self.zone)}"
         elif expected.next_utc:
-            todo, by = expected.question, f"about {local_text(expected.next_utc, self.zone)}"
+            at, waits = local_text(expected.next_utc, self.zone), seconds_of(expected.next_utc) <= now_s
+            todo, by = expected.question, f"now: it waits since {at}" if waits else f"about {at}"
         else:
-            todo, by = "no question is expected", ""
+            todo, by = expected.question or "no question is expected", ""
         waiting = [one for one in self.mailing.waiting() if one.tries]
         late = f"; {len(waiting)} notices could not be sent yet" if waiting else ""
         return Notice(

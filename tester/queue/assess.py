@@ -57,6 +57,8 @@ class AssessTask:
     then: Hashes | None = None
     known_rig: str = ""
     simulated: bool = True
+    copies: int = 1
+    """Items that are added, each with a folder: ``folder``, whose name is the first one's number, and the next ones."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -102,7 +104,11 @@ def assess(task: AssessTask) -> Assessment:
     needs = _needs(task, found, rig)
     differs: list[str] = []
     if task.then is None:
-        write_text(Path(task.folder) / RIG_AS_ADDED, rig.text)
+        first = Path(task.folder)
+        for number in range(task.copies):
+            folder = first.with_name(f"{int(first.name) + number}") if number else first
+            folder.mkdir(parents=True, exist_ok=True)
+            write_text(folder / RIG_AS_ADDED, rig.text)
     else:
         differs = differences(task.then, hashes, _kept_rig(Path(task.folder)), rig.text)
     return Assessment(

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from datetime import datetime, timedelta
+from dataclasses import dataclass, replace
+from datetime import datetime, time, timedelta
 from math import hypot
 from typing import Final
 
+from tester.base.words import local_hour
 from tester.queue.items import ItemState
 from tester.queue.predict import BETWEEN_S
 from tester.queue.view import ItemView, QueueView, stamp
@@ -90,11 +91,23 @@ def window(start: str, end: str, now_utc: str) -> tuple[datetime, datetime]:
     return begins, ends
 
 
-def _today(text: str, now: datetime) -> datetime:
+def following(text: str, now_utc: str) -> str:
+    """Return the next time at which the clock of this computer's zone shows HH:MM, as ISO 8601 text in UTC."""
+    now = datetime.fromisoformat(now_utc).astimezone()
+    at = _today(text, now)
+    return stamp(at if at > now else at + timedelta(days=1), 0.0)
+
+
+def time_of_day(text: str) -> time:
+    """Return a time of day, HH:MM; raises ValueError for other texts."""
     try:
-        at = datetime.strptime(text, "%H:%M")
+        return datetime.strptime(text, "%H:%M").time()
     except ValueError:
         raise ValueError(f'expected a time of day such as 18:00, got "{text}"') from None
+
+
+def _today(text: str, now: datetime) -> datetime:
+    at = time_of_day(text)
     return now.replace(hour=at.hour, minute=at.minute, second=0, microsecond=0)
 
 
@@ -105,8 +118,12 @@ def night_check(view: QueueView, now_utc: str, begins: datetime, ends: datetime)
     start_s = 0.0 if view.going else max(from_s, 0.0)
     items = [item for item in view.listed if item.state is not ItemState.SKIPPED]
     from_s = max(from_s, 0.0)
-    first, asks, end = _alone(items, start_s, from_s)
-    better = _better(items, start_s, from_s, to_s, first.at_s, now)
+    beginning = [item for item in items if item.end_utc] if view.until_utc else items
+    first, asks, end = _alone(beginning, start_s, from_s)
+    if len(beginning) < len(items):
+        text = f"item {items[len(beginning)].id} may last beyond {local_hour(view.until_utc)}, and does not begin"
+        first, end = (replace(mark, text=text) if mark is end else mark for mark in (first, end))
+    better = _better(items, start_s, from_s, to_s, first.at_s, now) if not view.until_utc else None
     needed = [
         Needed(ask.item.id, ask.item.name, ask.text, *_around(ask, now))
         for ask in asks

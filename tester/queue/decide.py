@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from datetime import datetime, timedelta
 from typing import Final
 
 from tester.base.screen import Check
+from tester.base.words import local_hour
 from tester.queue.fold import Queue
+from tester.queue.predict import BETWEEN_S
 
 FREE: Final = "free"
 RIG: Final = "rig"
@@ -62,10 +65,15 @@ class Look:
     reason: str
 
 
-def decide(queue: Queue, evidence: Evidence | None) -> StartItem | Wait | Look:
-    """Return what the queue does next: start an item, look at the rig for one, or wait with a reason in words."""
+def decide(queue: Queue, evidence: Evidence | None, now_utc: str) -> StartItem | Wait | Look:
+    """Return what the queue does next: start an item, look at the rig for one, or wait with a reason in words.
+
+    ``now_utc``: the wall clock, ISO 8601 with a time zone.
+    """
     if (held := waits(queue)) is not None:
         return held
+    if late := too_late(queue, queue.until_utc, now_utc):
+        return Wait(late, stands=True)
     first = queue.next
     assert first is not None  # otherwise the queue waits
     number = first.item.id
@@ -80,6 +88,22 @@ def decide(queue: Queue, evidence: Evidence | None) -> StartItem | Wait | Look:
         stands = any(name not in PASSES for name, _ in failed)
         return Wait(f"item {number} does not begin: {'; '.join(text for _, text in failed)}", stands)
     return StartItem(number)
+
+
+def too_late(queue: Queue, until_utc: str, now_utc: str) -> str:
+    """Return why the next item must not begin now if it has to end by ``until_utc`` ("": never); "" if it may.
+
+    Its latest end counts, the end of its interval of 95 %: who asks for the rig at an hour relies on it.
+    """
+    first = queue.next
+    if not until_utc or first is None:
+        return ""
+    latest_s = BETWEEN_S + first.item.needs.high_s
+    now, until = datetime.fromisoformat(now_utc), datetime.fromisoformat(until_utc)
+    if now + timedelta(seconds=latest_s) <= until:
+        return ""
+    latest = local_hour((now + timedelta(seconds=latest_s)).isoformat())
+    return f"item {first.item.id} may last until {latest}, and the queue goes until {local_hour(until_utc)}"
 
 
 def waits(queue: Queue) -> Wait | None:

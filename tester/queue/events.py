@@ -12,9 +12,10 @@ from tester.queue.items import End, Hashes, QueueItem
 
 @dataclass(frozen=True, slots=True)
 class ItemAdded:
-    """A person added an item; it waits at the end."""
+    """A person added an item; it waits at the end. ``copies``: how many times, each as an item of its own."""
 
     item: QueueItem
+    copies: int = 1
     event: Literal["added"] = "added"
 
 
@@ -98,9 +99,10 @@ class ItemEnded:
 
 @dataclass(frozen=True, slots=True)
 class QueueStarted:
-    """A person started the queue."""
+    """A person started the queue. ``until_utc``: no item begins that may not have ended by then; "" for no limit."""
 
     by: str
+    until_utc: str = ""
     event: Literal["started"] = "started"
 
 

@@ -26,6 +26,8 @@ from tester.queue.items import MAY_GO_ON, End, Hashes, ItemState, QueueItem
 
 MOST_WAITING: Final = 200
 """Greatest number of items that wait or are skipped [A]: months of work; a prediction of them takes milliseconds."""
+MOST_COPIES: Final = 50
+"""Greatest number of copies of an item that one command adds [A]."""
 AT_END: Final = "it came to its end"
 NEVER_STARTED: Final = "not started yet"
 
@@ -67,6 +69,8 @@ class Queue:
     why: str = NEVER_STARTED
     utc: str = ""
     """Time of the newest event."""
+    until_utc: str = ""
+    """Time by which every item has to end while the queue goes; "" for no limit."""
     entries: tuple[QueueEntry, ...] = ()
 
     def entry(self, number: int) -> QueueEntry:
@@ -123,6 +127,8 @@ def applied(queue: Queue, recorded: QueueLine) -> Queue:
     changed = _CHANGES.get(type(what), _stood)(queue, what, recorded.utc)
     if changed.going and changed.under_way is None and changed.next is None:
         changed = replace(changed, going=False, why=AT_END)  # an item added later must not begin by being added
+    if not changed.going:
+        changed = replace(changed, until_utc="")
     return replace(changed, revision=recorded.n, utc=recorded.utc)
 
 
@@ -130,11 +136,22 @@ def _added(queue: Queue, what: ItemAdded, utc: str) -> Queue:
     item = what.item
     if item.id != queue.next_id:
         raise QueueError(f"the next item is number {queue.next_id}, not {item.id}")
-    if len(queue.listed) >= MOST_WAITING:
+    if not 1 <= what.copies <= MOST_COPIES:
+        raise QueueError(f"{what.copies} copies: expected 1 to {MOST_COPIES}")
+    if len(queue.listed) + what.copies > MOST_WAITING:
         raise QueueError(f"the queue is full: it holds {counted(MOST_WAITING, 'item')}")
     if wrong := [end.value for end in item.after if end not in MAY_GO_ON]:
         raise QueueError(f"after {', '.join(wrong)} the queue always stands: expected done, short or failed")
-    return replace(queue, entries=(*queue.entries, QueueEntry(item)))
+    if what.copies == 1:
+        return replace(queue, entries=(*queue.entries, QueueEntry(item)))
+    copies = (QueueEntry(_copy(item, number, what.copies)) for number in range(what.copies))
+    return replace(queue, entries=(*queue.entries, *copies))
+
+
+def _copy(item: QueueItem, number: int, copies: int) -> QueueItem:
+    """Return a copy: on a simulated rig with the next seed, as the same one would give the same run again."""
+    name = f"{item.name} ({number + 1} of {copies})"
+    return replace(item, id=item.id + number, name=name, seed=item.seed + number if item.simulated else item.seed)
 
 
 def _moved(queue: Queue, what: ItemMoved, utc: str) -> Queue:
@@ -222,7 +239,7 @@ def _started(queue: Queue, what: QueueStarted, utc: str) -> Queue:
         raise QueueError("the queue is started already")
     if queue.next is None:
         raise QueueError("no item waits: add one, or move one that is skipped")
-    return replace(queue, going=True, why="")
+    return replace(queue, going=True, why="", until_utc=what.until_utc)
 
 
 def _stood(queue: Queue, what: QueueEvent, utc: str) -> Queue:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tester.base.words import rough_duration
+
 
 class End(StrEnum):
     """How an item ended."""
@@ -84,13 +86,28 @@ class Needs:
 
 
 @dataclass(frozen=True, slots=True)
+class Unanswered:
+    """An item is stopped in a controlled way once a question has waited for ``within_s``, s of wall time.
+
+    ``skip``: then the queue goes on, if the next item asks nothing of a person; otherwise it stands.
+    """
+
+    within_s: float
+    skip: bool = False
+
+    def words(self) -> str:
+        """Return it in words."""
+        return f"stopped after {rough_duration(self.within_s)} without an answer"
+
+
+@dataclass(frozen=True, slots=True)
 class QueueItem:
     """A frozen recipe with its options. ``id`` counts from 1 and is used once.
 
     ``origin``: where the recipe was read, whose folder is searched for materials; "" for a text. ``rig``: the rig's
     name. ``speed``: rig seconds per second of a simulated rig, None = as fast as possible. ``yes``: prompts are
     answered without a person, on a simulated rig only. ``by``: who added it. ``after``: ends after which the queue
-    goes on.
+    goes on. ``unanswered``: what ends a question that a person does not answer; None: it waits as long as it takes.
     """
 
     id: int
@@ -111,3 +128,4 @@ class QueueItem:
     operator: str = ""
     notes: str = ""
     after: tuple[End, ...] = GO_ON
+    unanswered: Unanswered | None = None

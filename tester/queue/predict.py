@@ -71,6 +71,16 @@ def planned(queue: Queue, left_s: float | None = None) -> list[PlannedItem]:
     return items
 
 
+def beginning(items: Sequence[PlannedItem], times: Sequence[Times], until_s: float) -> list[Times]:
+    """Return the times of the items that begin if none may that may last beyond ``until_s``, s from the prediction."""
+    begin: list[Times] = []
+    for item, one in zip(items, times, strict=True):
+        if item.left_s is None and one.start_s + item.needs.high_s > until_s:
+            break
+        begin.append(one)
+    return begin
+
+
 def predicted(items: Sequence[PlannedItem]) -> list[Times]:
     """Return the times of items that run one after another.
 

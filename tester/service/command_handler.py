@@ -83,11 +83,11 @@ class Orders:
             desk.gateway.refuse(self.job, f"{kind} by {name}")
             self.job = None
 
-    def skip(self, by: str) -> None:
-        """Stop the running item of the queue in a controlled way; the queue itself continues."""
+    def end_item(self, reason: str) -> None:
+        """Stop the running item of the queue in a controlled way; the queue itself continues if that is on record."""
         watch = self.desk.watch
         if watch is not None:
-            watch.run.request_stop(f"skipped by {by}")
+            watch.run.request_stop(reason)
             self.desk.stop_rest(False)
         elif self.job is not None:
             self.job = None

@@ -208,14 +208,19 @@ class ListRuns(StrictMessage):
 
 Revision = Annotated[int, Field(ge=0)]
 ItemNumber = Annotated[int, Field(ge=1)]
+LEAST_WAIT_S, MOST_WAIT_S = 60.0, 604_800.0
+"""Limits of a question's time, s [A]: a person can be called and come; no item blocks a rig for more than a week."""
 Clock = Annotated[str, Field(pattern=r"^([01]?\d|2[0-3]):[0-5]\d$")]
 
 
 @dataclass(frozen=True, slots=True)
 class QueueAdd(StrictMessage):
-    """Add an item to the end of the queue, if it is valid on the service's rig. Result: ``{"id", "revision"}``.
+    """Add an item to the end of the queue, if it is valid on the service's rig.
 
-    Options as of ``run``; the recipe is frozen now. ``after``: ends after which the queue continues.
+    Options as of ``run``; the recipe is frozen now. ``after``: ends after which the queue continues. ``copies``: how
+    many times, each an item of its own; on a simulated rig each has the next seed. ``answer_within_s``: wall time after
+    which an item with an unanswered question is stopped, None = never. Then the queue stands, or with ``unanswered`` =
+    ``skip`` goes on if the next item asks nothing of a person. Result: ``{"id", "ids", "revision"}``.
     """
 
     recipe: PathText
@@ -227,6 +232,9 @@ class QueueAdd(StrictMessage):
     operator: Name = ""
     notes: Note = ""
     after: tuple[Literal["done", "short", "failed"], ...] = ("done", "short")
+    copies: Annotated[int, Field(ge=1, le=50)] = 1
+    answer_within_s: Annotated[float, Field(ge=LEAST_WAIT_S, le=MOST_WAIT_S, allow_inf_nan=False)] | None = None
+    unanswered: Literal["stand", "skip"] = "stand"
     command: Literal["queue_add"] = "queue_add"
 
 
@@ -264,9 +272,12 @@ class QueueDrop(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class QueueStart(StrictMessage):
-    """Start the queue. ``agree``: items that run although something has changed since they were added."""
+    """Start the queue. ``agree``: items that run although something has changed since they were added. ``until``: the
+    next such time of day of the service; an item that may last longer does not begin, and the queue then stands.
+    """
 
     agree: Annotated[tuple[ItemNumber, ...], Field(max_length=200)] = ()
+    until: Clock | Literal[""] = ""
     command: Literal["queue_start"] = "queue_start"
 
 

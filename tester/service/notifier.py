@@ -13,6 +13,7 @@ from tester.base.words import conditions_done
 from tester.notices import causes
 from tester.notices.notice import NextNeeded, Notice, NoticeOver
 from tester.queue.recover import end_of
+from tester.queue.view import QueueView, next_ask
 from tester.service.gateway_link import GatewayLink
 from tester.service.state_view import PromptView, RunView
 from tester.service.values import PlanTrack
@@ -57,6 +58,10 @@ class Notifier:
         self._held = False
         self._trip_key = ""
         """Key of the trip that ends the run under way."""
+        self._queued = NOTHING
+        """What the queue does, and the next question behind the run under way."""
+        self._expected = NOTHING
+        """What was told last."""
 
     def begun(self, view: RunView) -> None:
         """Take the run, or a further part of it, that is under way from now on."""
@@ -120,14 +125,28 @@ class Notifier:
         """Tell when a run will need a person. ``lapse``: rig seconds per second, None if unknown."""
         run = self.run
         if track is None or run is None:
-            self._gateway.notify(NOTHING)
+            self._tell(self._queued)
             return
         at, question = track.standing(), track.next_question()
         doing = f"run {run.name}: {conditions_done(at.over, at.conditions)}"
-        if question is None or not lapse:
-            self._gateway.notify(NextNeeded(doing, "", question[1] if question is not None else ""))
+        if question is None:
+            self._tell(replace(self._queued, doing=doing))
         else:
-            self._gateway.notify(NextNeeded(doing, clock.utc_in(question[0] / lapse), question[1]))
+            self._tell(NextNeeded(doing, clock.utc_in(question[0] / lapse) if lapse else "", question[1]))
+
+    def queue(self, queue: QueueView) -> None:
+        """Take the queue as clients see it: the next question is its own where the run under way asks none."""
+        ask = next_ask(queue)
+        asks = ask is not None or queue.going
+        doing = f"the queue: {queue.state}" if asks else NOTHING.doing
+        self._queued = NextNeeded(doing, *(ask or ("", "")))
+        if self.run is None:
+            self._tell(self._queued)
+
+    def _tell(self, expected: NextNeeded) -> None:
+        if expected != self._expected:
+            self._expected = expected
+            self._gateway.notify(expected)
 
     def over(self) -> None:
         """Withdraw what belonged to a run that is no longer under way."""

@@ -11,38 +11,39 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Final
 
+from pydantic import JsonValue
+
 from tester.base import clock
 from tester.base.lock import ExclusiveUse, RigInUseError
 from tester.base.screen import Check
 from tester.base.trouble import in_words
 from tester.queue.assess import Assessment, AssessTask
-from tester.queue.decide import Evidence, Look, StartItem, decide
+from tester.queue.check import following
+from tester.queue.decide import Evidence, Look, StartItem, decide, too_late
 from tester.queue.events import (
-    ItemAdded,
     ItemAgreed,
     ItemBegan,
-    ItemDropped,
     ItemEnded,
-    ItemMoved,
     ItemReturned,
-    ItemSkipped,
     ItemTaken,
     QueueEvent,
     QueueStarted,
     QueueStood,
 )
-from tester.queue.fold import MOST_WAITING, Queue, QueueEntry, QueueError, check_revision
+from tester.queue.fold import MOST_WAITING, Queue, QueueEntry, QueueError
 from tester.queue.items import End, QueueItem
 from tester.queue.places import item_folder, queue_folder, run_recipe
 from tester.queue.record import QueueRecord
 from tester.queue.recover import recovery
 from tester.service.assessing import Assessor
-from tester.service.commands import QueueAdd, QueueDrop, QueueMove, QueueOrder, QueueSkip, QueueStand, QueueStart
+from tester.service.commands import QueueAdd, QueueOrder, QueueSkip, QueueStand, QueueStart
 from tester.service.queue_changes import Changes
+from tester.service.queue_edits import added, edited, stood
 from tester.service.queue_evidence import Attested, evidence_of
 from tester.service.queue_news import QueueNews
 from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
+from tester.service.unanswered import AnswerLimit
 
 AGAIN_S: Final = 30.0
 """Time until the rig is looked at again while an item waits for something that passes without a person, s [A]."""
@@ -73,14 +74,14 @@ class _Found:
 class QueueDesk:
     """The queue of the service's rig."""
 
-    def __init__(self, desk: Desk, rig: QueueRig, skip: Callable[[str], None], busy: Callable[[], str]) -> None:
-        """``skip`` stops the item under way for a client; ``busy`` returns why nothing may begin, "" if it may."""
+    def __init__(self, desk: Desk, rig: QueueRig, stop: Callable[[str], None], busy: Callable[[], str]) -> None:
+        """``stop`` stops the item under way for a reason; ``busy`` returns why nothing may begin, "" if it may."""
         self.desk = desk
         self.rig = rig
         self.folder = queue_folder(rig.runs, desk.rig.name, simulated=desk.rig.simulated)
         self.problem = "the queue is not read yet"
         self.changes: Changes | None = None
-        self._skip = skip
+        self._stop = stop
         self._busy = busy
         self._use = ExclusiveUse()
         self._assessor = Assessor()
@@ -92,7 +93,8 @@ class QueueDesk:
         self._wait = ""
         """Why the next item does not begin, as long as the queue goes."""
         self._again_s = 0.0
-        self._news = QueueNews(desk)
+        self._limit = AnswerLimit(stop)
+        self._news = QueueNews(desk, self._limit)
 
     # -- the record -------------------------------------------------------------------------------------------
 
@@ -147,12 +149,12 @@ class QueueDesk:
             reason = f"stood by {order.by}" + (f": {action.reason}" if action.reason else "")
             self._put(order, lambda _queue: QueueStood(reason, order.by))
         else:
-            self._put(order, lambda queue: _edit(queue, action, order.by), lambda: self._edited(action, order.by))
+            self._put(order, lambda queue: edited(queue, action, order.by), lambda: self._edited(action, order.by))
 
     def stopped(self, by: str) -> None:
         """Let the queue stand after STOP from any client."""
         if self.changes is not None and (self.going or self.unsettled):
-            self.changes.put(lambda queue: _standing(queue, by))
+            self.changes.put(lambda queue: stood(queue, by))
 
     def _put(self, order: Order, make: Callable[[Queue], QueueEvent], done: Callable[[], None] = lambda: None) -> None:
         """Ask for a change and answer its client once it is on the disk."""
@@ -171,12 +173,12 @@ class QueueDesk:
     def _edited(self, action: QueueOrder, by: str) -> None:
         under_way = self.queue.under_way
         if isinstance(action, QueueSkip) and under_way is not None and under_way.item.id == action.id:
-            self._skip(by)
+            self._stop(f"skipped by {by}")
 
     def _add(self, order: Order) -> None:
         if len(self._adds) >= MOST_ADDS:
             self.desk.gateway.refuse(order, f"{MOST_ADDS} items wait to be checked already: wait for their answers")
-        elif len(self.queue.listed) >= MOST_WAITING:
+        elif len(self.queue.listed) >= MOST_WAITING:  # the record refuses copies beyond it
             self.desk.gateway.refuse(order, f"the queue is full: it holds {MOST_WAITING} items")
         else:
             self._adds.append(order)
@@ -184,11 +186,9 @@ class QueueDesk:
     def _start(self, order: Order, action: QueueStart) -> None:
         """Start the queue; first a look at the first item to which a person agrees, whose hashes are then kept."""
         assert self.changes is not None
-        if self.queue.going:
-            self.desk.gateway.refuse(order, "the queue is started already")
-            return
-        if self.desk.latched:
-            self.desk.gateway.refuse(order, f"the rig is latched ({self.desk.latched}): acknowledge it first")
+        until_utc = following(action.until, clock.utc_now()) if action.until else ""
+        if why := self._may_not_start(action, until_utc):
+            self.desk.gateway.refuse(order, why)
             return
         for number in action.agree:
             found = self._found
@@ -203,7 +203,14 @@ class QueueDesk:
             self._attested = Attested(order.by, clock.monotonic())
             self._found, self._again_s, self._wait = None, 0.0, ""
 
-        self._put(order, lambda _queue: QueueStarted(order.by), started)
+        self._put(order, lambda _queue: QueueStarted(order.by, until_utc), started)
+
+    def _may_not_start(self, action: QueueStart, until_utc: str) -> str:
+        if self.queue.going:
+            return "the queue is started already"
+        if self.desk.latched:
+            return f"the rig is latched ({self.desk.latched}): acknowledge it first"
+        return too_late(self.queue, until_utc, clock.utc_now())
 
     # -- between two ticks --------------------------------------------------------------------------------------
 
@@ -212,6 +219,7 @@ class QueueDesk:
         if self.changes is not None:
             self.changes.look()
             self._look_at_items()
+            self._limit.look(self.desk.watch, self.changes)
         self._publish()
 
     def _look_at_items(self) -> None:
@@ -238,7 +246,7 @@ class QueueDesk:
         overrides = (*rig.overrides, *own.overrides)
         task = AssessTask(folder, str(rig.runs), rig.rig, "", "", overrides, rig.accept_risk, own.yes, own.speed)
         if isinstance(what, QueueAdd):
-            return replace(task, origin="" if what.text else what.recipe, text=what.text)
+            return replace(task, origin="" if what.text else what.recipe, text=what.text, copies=what.copies)
         item = what.item
         return replace(task, origin=item.origin, text=item.recipe, then=what.agreed, known_rig=item.rig,
                        simulated=item.simulated)  # fmt: skip
@@ -258,17 +266,18 @@ class QueueDesk:
                 if refusal:
                     self.desk.gateway.refuse(order, refusal)
                     return
-                number = self.queue.entries[-1].item.id
-                self.desk.command(f"queue add {number} ({found.name}) by {order.by}")
-                self.desk.gateway.accept(order, {"id": number, "revision": self.queue.revision})
+                numbers = [entry.item.id for entry in self.queue.entries[-action.copies :]]
+                self.desk.command(f"queue add {', '.join(map(str, numbers))} ({found.name}) by {order.by}")
+                result: JsonValue = {"id": numbers[0], "ids": [*numbers], "revision": self.queue.revision}
+                self.desk.gateway.accept(order, result)
 
-            self.changes.put(lambda queue: ItemAdded(_item(queue, action, found, order.by)), then)
+            self.changes.put(lambda queue: added(queue, action, found, order.by), then)
 
     def due(self) -> QueueItem | None:
         """Return the item that may begin now; None while the queue waits. Call it only while nothing is under way."""
         if self.changes is None or self.unsettled or self.changes.broken:
             return None
-        verdict = decide(self.queue, self._evidence())
+        verdict = decide(self.queue, self._evidence(), clock.utc_now())
         if isinstance(verdict, StartItem):
             self._found, self._wait, self._again_s = None, f"item {verdict.item} begins", 0.0
             return self.queue.entry(verdict.item).item
@@ -326,24 +335,3 @@ class QueueDesk:
     def _broken(self) -> str:
         return self.problem or (self.changes.broken if self.changes is not None else "")
 
-
-def _standing(queue: Queue, by: str) -> QueueEvent:
-    if not queue.going:
-        raise QueueError("it stands already")
-    return QueueStood(by)
-
-
-def _edit(queue: Queue, action: QueueOrder, by: str) -> QueueEvent:
-    assert isinstance(action, QueueMove | QueueSkip | QueueDrop)
-    check_revision(queue, action.revision)
-    if isinstance(action, QueueMove):
-        return ItemMoved(action.id, action.before, by)
-    return ItemSkipped(action.id, by) if isinstance(action, QueueSkip) else ItemDropped(action.id, by)
-
-
-def _item(queue: Queue, action: QueueAdd, found: Assessment, by: str) -> QueueItem:
-    return QueueItem(
-        queue.next_id, found.name, found.text, found.sha256, found.origin, found.rig, found.simulated, found.hashes,
-        found.needs, by, clock.utc_now(), action.overrides, action.seed, action.speed, action.yes, action.operator,
-        action.notes, tuple(End(end) for end in action.after),
-    )  # fmt: skip

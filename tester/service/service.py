@@ -90,7 +90,7 @@ class Service:
         self.desk = Desk(gateway, self.rig, options.runs)
         self.orders = Orders(self.desk)
         rig = QueueRig(options.rig, options.overrides, options.accept_risk, options.runs)
-        self.queue = self.orders.queue = QueueDesk(self.desk, rig, self.orders.skip, self._busy)
+        self.queue = self.orders.queue = QueueDesk(self.desk, rig, self.orders.end_item, self._busy)
         self.desk.notices.item_of = lambda view: item_end(self.queue.queue, view, latched=bool(self.desk.latched))
         self._look_due_s = 0.0
 

@@ -33,8 +33,8 @@ def test_lives_without_a_fault_miss_nothing(tmp_path: Path) -> None:
 
 
 def test_a_queue_that_needs_no_evidence_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def careless(queue: Queue, evidence: Evidence | None) -> StartItem | Wait | Look:
-        verdict = decide(queue, evidence)
+    def careless(queue: Queue, evidence: Evidence | None, now_utc: str) -> StartItem | Wait | Look:
+        verdict = decide(queue, evidence, now_utc)
         return StartItem(queue.next.item.id) if isinstance(verdict, Look) and queue.next is not None else verdict
 
     monkeypatch.setattr("tester.service.queue_desk.decide", careless)

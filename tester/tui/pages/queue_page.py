@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from typing import ClassVar
 
 from rich.text import Text
@@ -83,8 +84,7 @@ class QueuePage(View):
         first = next((at for at, item in enumerate(items) if not item.state.over), 0)
         table.move_cursor(row=numbers.index(chosen.id) if chosen is not None and chosen.id in numbers else first)
         table.border_title = Text(clean(f"Queue: {self.queue.state}" if self.queue is not None else "Queue", 200))
-        ends = f"ends {clock_text(self.queue.end_utc)}" if self.queue is not None and self.queue.end_utc else ""
-        table.border_subtitle = Text(ends)
+        table.border_subtitle = Text(", ".join(_limits(self.queue)) if self.queue is not None else "")
 
     @property
     def chosen(self) -> ItemView | None:
@@ -143,6 +143,14 @@ class QueuePage(View):
         self.host.order(QueueStand(), "no further item begins")
 
 
+def _limits(queue: QueueView) -> Iterator[str]:
+    """Yield when the queue ends, and the time beyond which no item may last."""
+    if queue.end_utc:
+        yield f"ends {clock_text(queue.end_utc)}"
+    if queue.until_utc:
+        yield f"no item begins that may last beyond {clock_text(queue.until_utc)}"
+
+
 def cells(item: ItemView) -> tuple[str, ...]:
     """Return an item's cells for HEADER."""
     times = (item.end_utc, item.end_low_utc, item.end_high_utc) if not item.state.over else (item.ended_utc, "", "")
@@ -153,6 +161,6 @@ def cells(item: ItemView) -> tuple[str, ...]:
         rough_duration(item.seconds),
         *(clock_text(time) if time else "" for time in times),
         str(len(item.asks)) if item.asks else "",
-        item.reason,
+        item.reason or (item.unanswered.words() if item.asks and item.unanswered is not None else ""),
     )
     return tuple(clean(text, 60) for text in texts)

@@ -7,7 +7,7 @@ from time import process_time
 
 import pytest
 
-from tester.queue.check import NightCheck, night_check, window
+from tester.queue.check import NightCheck, following, night_check, window
 from tester.queue.events import ItemAdded, QueueStarted
 from tester.queue.items import PersonAsk, QueueItem
 from tester.queue.view import view_of
@@ -101,3 +101,22 @@ def test_a_window_in_the_past_is_that_of_tomorrow() -> None:
 def test_another_text_is_no_time_of_day(text: str) -> None:
     with pytest.raises(ValueError, match="expected a time of day such as 18:00"):
         window(text, "08:00", NOW)
+
+
+def test_with_a_time_limit_the_queue_runs_alone_until_the_last_item_that_begins() -> None:
+    until = (datetime.fromisoformat(NOW) + timedelta(hours=4)).isoformat()
+    items = [ItemAdded(item(number, seconds=1.5 * HOUR)) for number in (1, 2, 3)]
+    view = view_of(queue_of(*items, QueueStarted("anna", until)), "item 1 is next", NOW)
+    assert [bool(one.end_utc) for one in view.items] == [True, True, False]
+    assert view.end_utc == view.items[1].end_utc
+    found = night_check(view, NOW, datetime.fromisoformat(NOW), START + timedelta(hours=14))
+    assert at(found.alone_until_utc) == datetime.fromisoformat(NOW) + timedelta(hours=3, seconds=3)
+    assert found.because.startswith("item 3 may last beyond ")
+    assert (found.covered, found.better) == (False, None)
+
+
+@pytest.mark.parametrize(("now", "expected"), [("17:00", "18:00"), ("18:00", "18:00")])
+def test_the_next_time_of_day_is_never_now(now: str, expected: str) -> None:
+    here = datetime.fromisoformat(f"2024-02-21T{now}:00").astimezone()
+    found = datetime.fromisoformat(following(expected, here.isoformat()))
+    assert found == here + (timedelta(hours=1) if now != expected else timedelta(days=1))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
+from dataclasses import replace
 
 import pytest
 
@@ -19,9 +20,9 @@ from tester.queue.events import (
     QueueStarted,
     QueueStood,
 )
-from tester.queue.fold import MOST_WAITING, Queue, QueueError, check_revision
+from tester.queue.fold import MOST_COPIES, MOST_WAITING, Queue, QueueError, check_revision
 from tester.queue.items import End, ItemState
-from tests.tester.queue.made import item, queue_of
+from tests.tester.queue.made import UTC, item, queue_of
 
 TWO = (ItemAdded(item(1)), ItemAdded(item(2)))
 RUNS = (*TWO, QueueStarted("anna"), ItemTaken(1), ItemBegan(1, "run-1"))
@@ -169,3 +170,34 @@ def test_in_every_short_history_no_item_is_twice_or_lost_or_starts_by_itself() -
                 following[key] = (after, begun, count)
         open_queues = list(following.values())
     assert seen > 5_000
+
+
+def test_copies_are_items_of_their_own_with_the_next_seeds() -> None:
+    queue = queue_of(ItemAdded(item(1)), ItemAdded(replace(item(2, name="cold"), seed=7), copies=3), ItemAdded(item(5)))
+    copies = [(one.item.id, one.item.name, one.item.seed) for one in queue.listed[1:4]]
+    assert copies == [(2, "cold (1 of 3)", 7), (3, "cold (2 of 3)", 8), (4, "cold (3 of 3)", 9)]
+
+
+def test_copies_of_a_real_rig_keep_their_seed() -> None:
+    queue = queue_of(ItemAdded(replace(item(1), simulated=False), copies=2))
+    assert [one.item.seed for one in queue.listed] == [0, 0]
+
+
+@pytest.mark.parametrize("copies", [0, MOST_COPIES + 1])
+def test_a_wrong_number_of_copies_is_refused(copies: int) -> None:
+    with pytest.raises(QueueError, match="expected 1 to 50"):
+        queue_of(ItemAdded(item(1), copies=copies))
+
+
+def test_copies_beyond_the_queue_are_refused_together() -> None:
+    full = queue_of(*(ItemAdded(item(number)) for number in range(1, MOST_WAITING)))
+    with pytest.raises(QueueError, match="the queue is full"):
+        queue_of(ItemAdded(item(MOST_WAITING), copies=2), start=full)
+
+
+def test_a_time_limit_ends_when_the_queue_stands() -> None:
+    going = queue_of(*TWO, QueueStarted("anna", UTC))
+    assert going.until_utc == UTC
+    stands = queue_of(QueueStood("enough"), start=going)
+    assert stands.until_utc == ""
+    assert queue_of(QueueStarted("anna"), start=stands).until_utc == ""

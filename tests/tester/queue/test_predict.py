@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+from datetime import datetime, timedelta
 from math import sqrt
 from random import Random
 
 import pytest
 
-from tester.queue.events import ItemAdded, ItemSkipped
+from tester.queue.events import ItemAdded, ItemSkipped, QueueStarted
+from tester.queue.items import PersonAsk
 from tester.queue.predict import BETWEEN_S, PlannedItem, planned, predicted
-from tester.queue.view import view_of
+from tester.queue.view import next_ask, view_of
 from tests.tester.queue.made import UTC, item, queue_of
 
 
@@ -59,3 +61,22 @@ def test_independent_deviations_end_inside_the_interval_in_95_per_cent() -> None
         total = sum(random.gauss(3600.0, 0.1 * 3600.0 * 2.0 / 1.96) for _ in range(12)) + 11 * BETWEEN_S
         inside += last.low_s <= total <= last.high_s
     assert inside / 2000 == pytest.approx(0.95, abs=4 * sqrt(0.05 * 0.95 / 2000))
+
+
+def test_the_next_question_is_that_of_the_first_item_that_asks() -> None:
+    asks = (PersonAsk(600.0, "wheel 3: 1#"),)
+    items = [ItemAdded(item(1)), ItemAdded(item(2, asks=asks)), ItemAdded(item(3, asks=asks))]
+    going = view_of(queue_of(*items, QueueStarted("anna")), "item 1 is next", UTC)
+    expected = datetime.fromisoformat(going.items[1].start_utc) + timedelta(minutes=10)
+    found = next_ask(going)
+    assert found is not None
+    assert (datetime.fromisoformat(found[0]), found[1]) == (expected, "item 2, recipe 2: wheel 3: 1#")
+
+
+def test_a_queue_that_stands_with_items_needs_a_person_now() -> None:
+    standing = view_of(queue_of(ItemAdded(item(1))), "standing: not started yet", UTC)
+    assert next_ask(standing) == (UTC, "the queue waits for a person: standing: not started yet")
+
+
+def test_an_empty_queue_needs_no_person() -> None:
+    assert next_ask(view_of(queue_of(), "standing: not started yet", UTC)) is None

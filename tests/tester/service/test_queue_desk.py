@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from datetime import datetime
 from pathlib import Path
 
 import pytest
 
+from tester.base import clock
 from tester.queue.items import End, ItemState
 from tester.queue.places import queue_folder
 from tester.queue.record import RECORD, read_queue
@@ -15,6 +17,7 @@ from tester.queue.view import ItemView, QueueView
 from tester.service.alarms import Cause
 from tester.service.commands import (
     Acknowledge,
+    Answer,
     QueueAdd,
     QueueDrop,
     QueueMove,
@@ -25,6 +28,7 @@ from tester.service.commands import (
     Stop,
 )
 from tester.store.run_folders import run_folders
+from tester.store.run_reader import RunReader
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.service.stage import Script, Stage, play
 
@@ -303,3 +307,83 @@ def test_a_damaged_record_is_reported_and_nothing_begins(tmp_path: Path) -> None
     stage = play(tmp_path, script)
     assert "the line is damaged" in stage.refused["queue_add"]
     assert stage.queues[-1].problem
+
+
+ASKS = replace(ADD, yes=False, answer_within_s=3600.0)
+
+
+class FastClock:
+    """A clock that gains a minute at every look at a question."""
+
+    def __init__(self) -> None:
+        self.now_s = 0.0
+
+    def monotonic(self) -> float:
+        self.now_s += 60.0
+        return self.now_s
+
+
+def unanswered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *adds: QueueAdd) -> Stage:
+    """Play a queue whose first question has no answer, until its item is over and the queue has had time to go on."""
+    monkeypatch.setattr("tester.service.unanswered.clock", FastClock())
+
+    def script(stage: Stage) -> Script:
+        yield from added(stage, *adds)
+        yield stage.order(QueueStart())
+        yield from until(stage, lambda view: view.items[0].end is not None)
+        yield from until(stage, lambda view: not view.going)
+
+    return play(tmp_path, script)
+
+
+def test_a_question_without_an_answer_stops_its_item_and_the_queue_stands(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stage = unanswered(tmp_path, monkeypatch, ASKS, ADD)
+    assert states(stage.queues[-1]) == [(1, "stopped"), (2, "waiting")]
+    assert stage.queues[-1].state.startswith("standing: item 1 was stopped: no answer within 60 min to question 1: ")
+    assert any("without an answer the item is stopped at" in view.state for view in stage.queues)
+
+
+def test_a_wheel_that_was_never_mounted_keeps_the_queue_from_going_on(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    stage = unanswered(tmp_path, monkeypatch, replace(ASKS, unanswered="skip"), ADD)
+    assert states(stage.queues[-1]) == [(1, "stopped"), (2, "waiting")]
+
+
+def test_an_answer_in_time_lets_the_item_go_on(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from added(stage, ASKS)
+        yield stage.order(QueueStart())
+        yield from until(stage, lambda view: "waits for a person" in view.state)
+        yield stage.order(Answer(1))
+        yield from until(stage, lambda view: view.items[0].end is not None)
+
+    assert states(play(tmp_path, script).queues[-1]) == [(1, "done")]
+
+
+def test_copies_are_added_together_and_run_one_after_the_other(tmp_path: Path) -> None:
+    def script(stage: Stage) -> Script:
+        yield from added(stage, replace(ADD, copies=2))
+        assert stage.accepted["queue_add"] == {"id": 1, "ids": [1, 2], "revision": 1}
+        yield stage.order(QueueStart())
+        yield from until(stage, lambda view: all(item.state.over for item in view.items))
+
+    stage = play(tmp_path, script)
+    assert states(stage.queues[-1]) == [(1, "done"), (2, "done")]
+    seeds = [reader.run().info.seed for run in run_folders(tmp_path / "runs") for reader in [RunReader(run)]]
+    assert seeds == [1, 2]
+
+
+def test_a_queue_whose_first_item_would_last_too_long_is_not_started(tmp_path: Path) -> None:
+    soon = datetime.fromisoformat(clock.utc_in(120.0)).astimezone().strftime("%H:%M")
+
+    def script(stage: Stage) -> Script:
+        yield from added(stage, replace(ADD, speed=1.0))
+        yield stage.order(QueueStart(until=soon))
+        yield from answered(stage, "queue_start")
+
+    stage = play(tmp_path, script)
+    assert stage.refused["queue_start"].startswith("item 1 may last until ")
+    assert not stage.queues[-1].going

@@ -18,6 +18,8 @@ export class QueueView {
     this.list = h("ol", { class: "queue" });
     this.over = h("ol", { class: "queue over" });
     this.buttons = h("p", { class: "buttons" });
+    this.limit = h("div", { class: "fields" });
+    this.until = h("input", { type: "time", name: "until", id: "queue-until" });
     this.adding = h("div");
     this.night = h("div");
     this.shown = "";
@@ -29,7 +31,9 @@ export class QueueView {
         { class: "panel", "aria-label": "Queue" },
         h("h2", { text: "Queue" }),
         this.state,
+        this.ends,
         this.buttons,
+        this.limit,
         this.list,
       ),
       h(
@@ -64,6 +68,9 @@ export class QueueView {
       return;
     }
     let recipe = recipes[0][0];
+    const copies = h("input", { name: "copies", type: "number", min: 1, max: 50, value: 1 });
+    const hours = h("input", { name: "hours", type: "number", min: 0.1, max: 168, step: 0.1, placeholder: "for ever" });
+    let unanswered = "stand";
     const operator = h("input", { name: "operator", maxlength: 200 });
     const notes = h("input", { name: "notes", maxlength: 2000 });
     put(
@@ -74,7 +81,14 @@ export class QueueView {
           class: "fields",
           onsubmit: (event) => {
             event.preventDefault();
-            this.#add(recipe, operator.value, notes.value);
+            this.#add({
+              recipe,
+              copies: Number(copies.value) || 1,
+              answer_within_s: hours.value ? 3600 * Number(hours.value) : null,
+              unanswered,
+              operator: operator.value,
+              notes: notes.value,
+            });
           },
         },
         field(
@@ -82,6 +96,21 @@ export class QueueView {
           select(recipes, recipe, (value) => {
             recipe = value;
           }),
+        ),
+        field("Copies", copies),
+        field("A question waits, h", hours),
+        field(
+          "Without an answer",
+          select(
+            [
+              ["stand", "stop the item; the queue stands"],
+              ["skip", "stop the item; go on if the next one needs no person"],
+            ],
+            unanswered,
+            (value) => {
+              unanswered = value;
+            },
+          ),
         ),
         field("Operator", operator),
         field("Notes", notes),
@@ -97,11 +126,8 @@ export class QueueView {
     this.#check();
   }
 
-  #add(recipe, operator, notes) {
-    return this.app.orders.send(
-      { command: "queue_add", recipe, operator, notes },
-      "Added; the recipe is frozen as it is now",
-    );
+  #add(options) {
+    return this.app.orders.send({ command: "queue_add", ...options }, "Added; the recipe is frozen as it is now");
   }
 
   #check() {
@@ -146,15 +172,17 @@ export class QueueView {
     const open = items.filter((item) => !OVER.has(item.state));
     const over = items.filter((item) => OVER.has(item.state));
     say(this.state, !live ? link.trouble : !queue ? "The service has no queue." : queue.problem || queue.state);
-    say(this.ends, queue?.end_utc && open.length ? endWords(queue) : "");
+    const until = queue?.until_utc ? `No item begins that may last beyond ${local(queue.until_utc)}. ` : "";
+    say(this.ends, until + (queue?.end_utc && open.length ? endWords(queue) : ""));
     const focused = document.activeElement?.id;
     put(
       this.buttons,
       may && scene.queue
-        ? button("Start (needs a code)", () => this.app.orders.send({ command: "queue_start" }, "The queue goes"), {
-            class: "main",
-            id: "queue-start",
-          })
+        ? button(
+            "Start (needs a code)",
+            () => this.app.orders.send({ command: "queue_start", until: this.until.value }, "The queue goes"),
+            { class: "main", id: "queue-start" },
+          )
         : null,
       may && scene.queue
         ? button(
@@ -164,6 +192,7 @@ export class QueueView {
           )
         : null,
     );
+    put(this.limit, may && scene.queue ? field("Begin no item that may last beyond", this.until) : null);
     put(this.list, ...open.map((item, index) => this.#item(item, index, open, queue.revision, may)));
     put(
       this.over,
@@ -185,6 +214,9 @@ export class QueueView {
       item.start_utc && !OVER.has(item.state) ? `begins ${local(item.start_utc)}` : "",
       item.end_utc ? endWords(item) : item.ended_utc ? `ended ${local(item.ended_utc)}` : "",
       item.asks.length && !OVER.has(item.state) ? `asks a person ${item.asks.length} times` : "",
+      item.asks.length && item.unanswered && !OVER.has(item.state)
+        ? `is stopped after ${spell(item.unanswered.within_s)} without an answer`
+        : "",
       `added by ${item.by} ${local(item.utc)}`,
     ]
       .filter(Boolean)
