@@ -123,8 +123,8 @@ def next_ask(view: QueueView) -> tuple[str, str] | None:
         return (view.at_utc, f"the queue waits for a person: {view.state}") if waiting else None
     for item in waiting:
         if item.asks and item.start_utc:
-            first = item.asks[0]
-            return stamp(datetime.fromisoformat(item.start_utc), first.at_s), f"item {item.id}, {item.name}: {first.text}"
+            at_utc = stamp(datetime.fromisoformat(item.start_utc), item.asks[0].at_s)
+            return at_utc, f"item {item.id}, {item.name}: {item.asks[0].text}"
     return None
 
 

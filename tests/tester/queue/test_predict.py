@@ -10,7 +10,7 @@ import pytest
 
 from tester.queue.events import ItemAdded, ItemSkipped, QueueStarted
 from tester.queue.items import PersonAsk
-from tester.queue.predict import BETWEEN_S, PlannedItem, planned, predicted
+from tester.queue.predict import BETWEEN_S, SHARED, PlannedItem, planned, predicted
 from tester.queue.view import next_ask, view_of
 from tests.tester.queue.made import UTC, item, queue_of
 
@@ -37,9 +37,15 @@ def test_a_skewed_item_has_the_range_of_its_estimate_around_a_later_mean() -> No
     assert one.end_s == pytest.approx(1030.0)
 
 
-def test_half_ranges_add_up_as_squares() -> None:
+def test_half_ranges_add_up_as_squares_but_for_what_items_have_in_common() -> None:
     last = predicted(of(9))[-1]
-    assert last.high_s - last.end_s == pytest.approx(3.0 * 0.2 * 3600.0)
+    expected = sqrt(9 * 0.2**2 + 9 * 8 * SHARED**2) * 3600.0
+    assert last.high_s - last.end_s == pytest.approx(expected)
+
+
+def test_items_of_an_exact_duration_have_nothing_in_common() -> None:
+    last = predicted(of(9, share=0.0))[-1]
+    assert last.low_s == last.end_s == last.high_s
 
 
 def test_what_is_left_of_the_item_under_way_has_its_share_of_the_range() -> None:
@@ -54,11 +60,13 @@ def test_a_skipped_item_takes_no_time() -> None:
     assert [bool(one.start_utc) for one in view.items] == [False, True]
 
 
-def test_independent_deviations_end_inside_the_interval_in_95_per_cent() -> None:
+def test_deviations_that_are_common_in_part_end_inside_the_interval_in_95_per_cent() -> None:
     random, inside = Random(7), 0
     last = predicted(of(12))[-1]
+    own_s, common_s = 3600.0 * sqrt(0.2**2 - SHARED**2) / 1.96, 3600.0 * SHARED / 1.96
     for _ in range(2000):
-        total = sum(random.gauss(3600.0, 0.1 * 3600.0 * 2.0 / 1.96) for _ in range(12)) + 11 * BETWEEN_S
+        mean_s = random.gauss(3600.0, common_s)
+        total = sum(random.gauss(mean_s, own_s) for _ in range(12)) + 11 * BETWEEN_S
         inside += last.low_s <= total <= last.high_s
     assert inside / 2000 == pytest.approx(0.95, abs=4 * sqrt(0.05 * 0.95 / 2000))
 
