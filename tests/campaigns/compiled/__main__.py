@@ -24,7 +24,7 @@ from tests.campaigns.acceptance.figure import Figure, equal
 from tests.campaigns.compiled.worker import Case
 from tests.campaigns.faults.recipes import HEATED, QUICK, SIDESLIP
 from tests.extension.installing import EXAMPLES, describe
-from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, QUIET
+from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, QUIET, SHORT
 
 CHECKOUT = Path(__file__).parents[3]
 WORKER = Path(__file__).with_name("worker.py")
@@ -41,7 +41,7 @@ def cases(full: bool) -> list[Case]:
     quickstart = find("quickstart").read_text(encoding="utf-8")
     recipes = {"short": AT_ONCE, "quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED}
     found = [_case(f"{name}, seed {seed}", text, seed) for name, text in recipes.items() for seed in (0, 1)]
-    found.append(_case("short, perfect sensors", AT_ONCE, 0, QUIET))
+    found.append(_case("short, perfect sensors", SHORT, 0, QUIET))
     found.append(_case("quickstart", quickstart, 0))
     own = OWN_KIND / "lab_sledge"
     own_recipe, own_rig = (own / "recipe.yaml").read_text(encoding="utf-8"), str(own / "rig.yaml")

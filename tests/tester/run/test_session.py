@@ -36,7 +36,7 @@ from tester.run.session_options import SessionOptions
 from tester.run.simulated import simulated_ports
 from tester.store.run_reader import RunReader
 from tester.store.writer import RunWriter
-from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, HOT, QUIET, SHORT
+from tests.tester.kinds.wheel_on_belt.bench import HOT, QUIET, SHORT
 from tests.tester.store.build import CONDITION, RUN, SPECIMENS, open_writer, record
 
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
@@ -83,7 +83,7 @@ class Ended:
             return reader.run().status
 
 
-def run(home: Path, *overrides: str, seed: int = 0, text: str = AT_ONCE, screen: Screen | None = None) -> Ended:
+def run(home: Path, *overrides: str, seed: int = 0, text: str = SHORT, screen: Screen | None = None) -> Ended:
     """Run a recipe in ``home`` to its end."""
     home.mkdir(parents=True, exist_ok=True)
     recipe = home / "short.yaml"
@@ -96,7 +96,7 @@ def run(home: Path, *overrides: str, seed: int = 0, text: str = AT_ONCE, screen:
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Ended:
     """A run that is complete."""
-    return run(tmp_path_factory.mktemp("done"), *QUIET, text=SHORT)
+    return run(tmp_path_factory.mktemp("done"), *QUIET)
 
 
 @pytest.fixture(scope="module")
@@ -433,7 +433,7 @@ LOOSE = "interlocks.hold_at_most=3 h"
 
 def test_an_accepted_risk_is_kept_with_the_run_and_shown_at_its_end(tmp_path: Path) -> None:
     recipe = tmp_path / "short.yaml"
-    recipe.write_text(AT_ONCE, encoding="utf-8")
+    recipe.write_text(SHORT, encoding="utf-8")
     screen = Screen()
     options = SessionOptions(
         recipe=str(recipe), out=tmp_path / "runs", overrides=(*QUIET, LOOSE), accept_risk="nobody comes"

@@ -53,7 +53,7 @@ grids:
 """A recipe of five minutes of rig time, four of them to warm by 3 K: no pre-grinding, no rest, one condition."""
 
 AT_ONCE = SHORT.replace("25 degC", "23 degC")
-"""The same in a minute: the simulated room's 22 degC are within its band."""
+"""The same in a minute: the simulated room's 22 degC are within its band. Without noise the band can be left early."""
 
 QUIET = ("sim.noise=0", "sim.scatter=0", "sim.running_in=0")
 """Overrides for a rig whose coefficient stands still from the first turn."""

@@ -17,10 +17,10 @@ from tester.run.sweep.case import CaseResult, SweepTask, run_case
 from tester.run.sweep.grid import axes_of
 from tester.run.sweep.sweep import NotSimulatedError, Sweep, SweepOptions, carry_out, local, prepare_sweep
 from tests.tester.inputs.kept_laws.kept_example import example_text
-from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, QUIET
+from tests.tester.kinds.wheel_on_belt.bench import QUIET, SHORT
 from tests.tester.run.sweep.results import result, row
 
-QUICK = AT_ONCE.replace("14 rev", "7 rev")
+QUICK = SHORT.replace("14 rev", "7 rev")
 
 
 class Heard:
