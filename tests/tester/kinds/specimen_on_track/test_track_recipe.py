@@ -40,9 +40,9 @@ def test_what_the_rig_cannot_do_is_refused(change: tuple[str, str], rig: str, sa
 
 def test_a_check_says_where_friction_heat_would_matter() -> None:
     text = GROSCH.replace("load: 20 N", "load: 40 N").replace("3 mm/s", "10 mm/s")
-    text = text.replace("repeats: 1", "repeats: 1, temperature_band: 0.2 K").replace("within: 1 K", "within: 0.2 K")
+    text = text.replace("repeats: 1", "repeats: 1, temperature_band: 0.1 K").replace("within: 1 K", "within: 0.1 K")
     (said,) = problems(text, "grosch")
-    assert "friction warms the contact by 0.2 K at SBR, 40 N, 23 degC, 10 mm/s, more than its band of 0.2 K" in said
+    assert "friction warms the contact by 0.2 K at SBR, 40 N, 23 degC, 10 mm/s, more than its band of 0.1 K" in said
 
 
 def test_air_that_no_heater_brings_about_is_refused_with_the_reason() -> None:
