@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from math import log10, nan
 from multiprocessing import get_context
 from pathlib import Path
-from typing import Final
+from typing import Final, get_type_hints
 
 import numpy as np
 
@@ -44,9 +44,6 @@ BROKEN_DECADES: Final = (0.8, 1.2)
 """By how much a length is off, where a rule does not hold."""
 OFF_K, OFF_SHIFT, OFF_HEIGHT, OFF_WIDTH = 1.0, 0.02, 0.15, 0.1
 """How far the twin's rubber is off its file at most: Ts; constants of the shift, heights and widths as shares [A]."""
-RUBBER_KEYS: Final = {"t_ref": " degC", "c1": "", "c2": " K", "adhesion": "", "hysteresis": "", "adhesion_width": "",
-                      "hysteresis_width": ""}  # fmt: skip
-"""Those of a rubber that are off, with their units."""
 SPEEDS_M_S: Final = tuple(10.0 ** (-6.0 + 0.5 * i) for i in range(9))
 """Of the recipe grosch."""
 PIECE, REPEAT, AIR_K = 0.03, 0.02, 1.0
@@ -160,10 +157,9 @@ def drawn(seed: int, compound: str, own: TrackRubber, tracks: dict[str, TrackSur
 def run_of(seed: int, compound: str, own: TrackRubber, tracks: dict[str, TrackSurface]) -> dict[str, list[MasterPoint]]:
     """Return the rows of a whole run by track; none if it did not end as planned."""
     text = with_rubber(Path(recipes.find("grosch")).read_text(encoding="utf-8"), compound)
-    lengths = [f"sim.surfaces.{name}.{key}={getattr(one, key):.6g} um"
-               for name, one in tracks.items() for key in ("jump", "grit")]  # fmt: skip
-    rubber = [f"sim.rubbers.{compound}.{key}={getattr(own, key):.6g}{unit}" for key, unit in RUBBER_KEYS.items()]
-    bench = TrackBench("grosch", text, (*PLAIN, *lengths, *rubber), seed).leaping().to_the_end()
+    groups = [(f"sim.surfaces.{name}", one) for name, one in tracks.items()]
+    whole = [*(one for path, group in groups for one in _keys(path, group)), *_keys(f"sim.rubbers.{compound}", own)]
+    bench = TrackBench("grosch", text, (*PLAIN, *whole), seed).leaping().to_the_end()
     found: dict[str, list[MasterPoint]] = {track: [] for track in TRACKS}
     if bench.run.outcome is Outcome.DONE and not bench.kept.trips:
         steps = {step.condition: held_by(step.setpoint) for step in bench.plan.conditions()}
@@ -171,6 +167,14 @@ def run_of(seed: int, compound: str, own: TrackRubber, tracks: dict[str, TrackSu
             held = steps[int(point.label)]
             found[held.surface if held.interface == "dry" else f"{held.surface}, {held.interface}"].append(point)
     return found
+
+
+def _keys(path: str, group: TrackRubber | TrackSurface) -> Iterator[str]:
+    """Yield every key of a rubber or a surface: those that are not set are not its own but an abrasive's or SBR's."""
+    units = get_type_hints(type(group), include_extras=True)
+    for item in fields(group):
+        unit = units[item.name].__metadata__[0]
+        yield f"{path}.{item.name}={getattr(group, item.name):.9g}{'' if unit == '1' else f' {unit}'}"
 
 
 def trial(which: tuple[int, bool]) -> Trial:
