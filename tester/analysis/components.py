@@ -111,8 +111,9 @@ def mean_of(values: Sequence[PartValue]) -> PartValue:
     """Return the mean of values of one rig and compound; NaN where none has an uncertainty above 0.
 
     Weighted by 1 / (u^2 + d^2), d the standard deviation by which conditions truly differ, where they scatter by more
-    than their uncertainties (DerSimonian and Laird, Controlled Clinical Trials 7, 1986, 177). The mean is that of such
-    conditions, so d counts among its uncertainties. Common errors do not average out.
+    than their uncertainties (DerSimonian and Laird, Controlled Clinical Trials 7, 1986, 177). The measurand is the
+    plain mean of these conditions: as far as the weights differ from equal ones, d counts among the uncertainties.
+    Common errors do not average out.
     """
     certain = [value_of_rig for value_of_rig in values if isfinite(value_of_rig.value) and value_of_rig.standard > 0.0]
     if not certain:
@@ -130,7 +131,8 @@ def mean_of(values: Sequence[PartValue]) -> PartValue:
         (share * u, df) for value_of_rig, share in zip(certain, shares, strict=True) for u, df in value_of_rig.own
     ]
     if apart > 0.0:
-        independent.append((apart * sqrt(sum(share**2 for share in shares)), len(certain) - 1.0))
+        unequal = sqrt(sum((share - 1.0 / len(shares)) ** 2 for share in shares))
+        independent.append((apart * unequal, len(certain) - 1.0))
     return PartValue(value, tuple(independent), common)
 
 

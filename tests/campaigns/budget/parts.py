@@ -52,6 +52,7 @@ _OTHERS: Final = (
     ("what conditions truly differ by does not weigh", "value_of_rig.standard**2 + apart**2)",
      "value_of_rig.standard**2)"),
     ("... and is no uncertainty of their mean", "if apart > 0.0:", "if False:"),
+    ("equal weights leave what conditions differ by", "(share - 1.0 / len(shares)) ** 2", "share**2"),
     ("chance makes conditions differ", "scatter - (len(values) - 1)", "scatter"),
     ("common errors average out in a mean", "common[name] = so_far + share * u, min(least, df)",
      "common[name] = hypot(so_far, share * u), min(least, df)"),

@@ -120,11 +120,22 @@ def test_the_mean_counts_what_is_certain() -> None:
 
 
 def test_conditions_that_truly_differ_weigh_alike_in_their_mean() -> None:
-    apart = [PartValue(value, ((0.001 * u, inf),)) for value, u in ((0.1, 1.0), (0.2, 2.0), (0.3, 4.0))]
+    apart = [PartValue(value, ((0.001, inf),)) for value in (0.1, 0.2, 0.3)]
     found = mean_of(apart)
-    assert found.value == pytest.approx(0.2, abs=1e-4)
-    assert found.standard == pytest.approx(between(apart) / sqrt(3.0), rel=1e-3)
-    assert found.expanded == pytest.approx(4.3 * found.standard, rel=1e-2)  # three conditions
+    assert found.value == pytest.approx(0.2, rel=1e-9)
+    assert found.standard == pytest.approx(0.001 / sqrt(3.0), rel=1e-9)  # all of these conditions are known
+
+
+def test_as_far_as_weights_are_unequal_what_conditions_differ_by_is_in_their_mean() -> None:
+    apart = [PartValue(value, ((u, inf),)) for value, u in ((0.1, 0.001), (0.2, 0.002), (0.3, 0.1))]
+    found, d = mean_of(apart), between(apart)
+    weights = np.array([1.0 / (own[0][0] ** 2 + d**2) for own in (one.own for one in apart)])
+    weights /= weights.sum()
+    assert found.value == pytest.approx(float(weights @ [0.1, 0.2, 0.3]), rel=1e-9)
+    unequal = d * float(np.linalg.norm(weights - 1.0 / 3.0))
+    own = float(np.linalg.norm(weights * [0.001, 0.002, 0.1]))
+    assert found.standard == pytest.approx(hypot(unequal, own), rel=1e-9)
+    assert abs(found.value - 0.2) < found.expanded
 
 
 def test_what_conditions_differ_by_is_found_beside_their_uncertainties() -> None:
