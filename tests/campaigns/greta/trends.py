@@ -9,13 +9,13 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 from math import exp, log
+from pathlib import Path
 from statistics import fmean
 from typing import Final, TypeAlias
 
-from tests.campaigns.acceptance.bench import ROOT
 from tests.campaigns.greta.disc import BASE, COLD, ROUGH, DiscRun, Row
 
-ERRATA: Final = ROOT / "docs" / "explanation" / "errata-of-the-two-papers.md"
+ERRATA: Final = Path(__file__).parents[3] / "docs" / "explanation" / "errata-of-the-two-papers.md"
 SLOW_M_S, FAST_M_S = 0.05, 2.0
 LIGHT_N, HEAVY_N = 10.0, 20.0
 
@@ -101,8 +101,8 @@ STATEMENTS: Final = (
     Statement("dry friction rises with speed", "Eq 12, Fig 16", over_speed, dry, 1),
     Statement("hysteresis rises with speed", "Fig 21", over_speed, wet, 1),
     Statement("a deeper indentation has more hysteresis: it rises with load", "Fig 18's text", over_load, wet, 1),
-    Statement("dry friction falls with a falling pressure", "text to Fig 8", over_load, dry, 1,
-              erratum="friction falls with *decreasing* pressure"),
+    Statement("dry friction falls with a falling pressure", "text to Fig 8; its reason has it rise", over_load, dry, 1,
+              erratum="hysteresis rises, and mu rises with the load"),
     Statement("30 K change dry friction drastically; up, as E' falls (Fig 17b)", "Fig 17a", over_temperature, dry, 1,
               DRASTIC),
     Statement("a warmer rubber has a smaller tan d: hysteresis falls", "Figs 5, 7", over_temperature, wet, -1),
