@@ -61,7 +61,7 @@ class Notifier:
         self._queued = NOTHING
         """What the queue does, and the next question behind the run under way."""
         self._expected = NOTHING
-        """What was told last."""
+        """The ends that the last call expected."""
 
     def begun(self, view: RunView) -> None:
         """Take the run, or a further part of it, that is under way from now on."""
