@@ -105,7 +105,11 @@ class RubberStiffness:
     coverage: float
 
     def at(self, contacts: Sequence[Sequence[tuple[PressedContact, Loaded]]]) -> Deformation:
-        """Return the deformation at the averages of a condition, contact by contact."""
+        """Return the deformation at the averages of a condition, contact by contact.
+
+        Load, temperature and depth are means over the same averages: a contact of which only a moment lies in the
+        condition, such as that in which the wheel lifts, counts for no more than that moment.
+        """
         import numpy as np
 
         depths: list[float] = []
@@ -116,13 +120,15 @@ class RubberStiffness:
             whole = np.mean(rows.deeper_mm - rows.depth(x) + rows.pressed(x))
             slopes.append(np.mean(_slopes(rows.pressed, x) - _slopes(rows.depth, x), axis=0))
             depths.append(float(whole))
-        slope = np.mean(slopes, axis=0)
+        counts = np.array([len(pairs) for pairs in contacts], dtype=float)
+        shares = counts / counts.sum()
+        slope = shares @ np.array(slopes)
         own_mm = sqrt(float(slope @ np.array(self.covariance) @ slope))
         averages = [one for pairs in contacts for _, one in pairs]
-        u_mm = hypot(own_mm, self.scatter_mm / sqrt(len(contacts)))
+        u_mm = hypot(own_mm, self.scatter_mm * sqrt(float(shares @ shares)))
         return Deformation(
             len(contacts), _mean(one.force_n for one in averages), _mean(one.body_c for one in averages),
-            WithU(_mean(depths), self.coverage * u_mm),
+            WithU(float(shares @ np.array(depths)), self.coverage * u_mm),
         )  # fmt: skip
 
 

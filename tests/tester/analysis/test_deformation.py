@@ -76,6 +76,23 @@ def test_rubber_of_another_kind_is_told_from_it(softening: float, relaxation: fl
     assert sum(holds(one.relaxation, relaxation) for one in found) >= 2
 
 
+def test_a_contact_with_one_moment_in_a_condition_counts_for_no_more_than_that(
+    judged: list[tuple[Pressed, list[PressedContact], RubberStiffness]],
+) -> None:
+    _, contacts, rubber = judged[0]
+    (pairs, *_), (lifting, *_) = (by_condition(contacts, {key: key}).get(key, []) for key in (1, 2))
+    alone = rubber.at([pairs])
+    both = rubber.at([pairs, lifting[:1]])
+    one = rubber.at([lifting[:1]])
+    share = 1.0 / (len(pairs) + 1)
+    for name in ("load_n", "body_c"):
+        of = (getattr(found, name) for found in (alone, one, both))
+        first, second, together = of
+        assert together == pytest.approx((1.0 - share) * first + share * second)
+    depth = (1.0 - share) * alone.depth_mm.value + share * one.depth_mm.value
+    assert both.depth_mm.value == pytest.approx(depth) and len(pairs) > 10
+
+
 def test_too_few_contacts_show_nothing() -> None:
     assert stiffness_of(contacts_of(pressed(1))[: LEAST_CONTACTS - 1]) is None
 
