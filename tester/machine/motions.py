@@ -78,10 +78,13 @@ class Ask:
     closing it starts nothing.
     """
 
-    def __init__(self, text: str, *, near: bool = True) -> None:
-        """``text``: the question; ``near``: whether it asks a person to come near the machine."""
+    def __init__(self, text: str, *, near: bool = True, unit: str = "") -> None:
+        """``text``: the question; ``near``: whether it asks a person to come near the machine; ``unit``: of a quantity
+        that it asks for.
+        """
         self.text = text
         self.near = near
+        self.unit = unit
         self.number = 0
         self.record = 0
         self.recorded = False
@@ -112,7 +115,7 @@ class Ask:
         return False
 
     def _put(self, ctx: AnyContext, text: str) -> None:
-        self.number = ctx.prompts.ask(ctx.now, text, near=self.near).number
+        self.number = ctx.prompts.ask(ctx.now, text, near=self.near, unit=self.unit).number
         self.record = ctx.journal.prompt(ctx.now, text)
         self.recorded = False
 

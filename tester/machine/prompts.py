@@ -26,7 +26,7 @@ class Asks(Enum):
     CHOICE = "choice"
     """One of ``Question.choices``."""
     QUANTITY = "quantity"
-    """A number in ``Question.unit``, or with a unit of the same kind."""
+    """A number in ``Question.unit``, or with a unit of the same kind; or one of ``Question.choices``."""
     TEXT = "text"
     """A line of text."""
     KEY = "key"
@@ -55,6 +55,8 @@ class Question:
         if self.asks is Asks.KEY:
             return "" if text in (GO, "no") else f'expected "{GO}", or "no" to leave this step'
         if self.asks is Asks.QUANTITY:
+            if text in self.choices:
+                return ""
             try:
                 self.value(text)
             except UnitError as error:
@@ -129,9 +131,13 @@ class Prompts:
         """Return whether a prompt is answered automatically. ``near``: it asks a person to come near the machine."""
         return self.automatic and not (near and self.real)
 
-    def ask(self, now: float, text: str, *, near: bool = True) -> Prompt:
-        """Ask a run's question and return its prompt, which may already be answered."""
-        prompt = self._put(now, Question(f"prompt {len(self.asked) + 1}", text, Asks.CHOICE, (DONE,)))
+    def ask(self, now: float, text: str, *, near: bool = True, unit: str = "") -> Prompt:
+        """Ask a run's question and return its prompt, which may already be answered.
+
+        ``unit``: the answer is DONE, or a quantity in this unit.
+        """
+        asks = Asks.QUANTITY if unit else Asks.CHOICE
+        prompt = self._put(now, Question(f"prompt {len(self.asked) + 1}", text, asks, (DONE,), unit))
         prompt.answer = "yes (automatic)" if self.answers_itself(near=near) else None
         return prompt
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from tester.machine.prompts import DONE
+from tester.machine.prompts import NOT_YET
 from tester.machine.state import Mode
 from tester.service.commands import (
     Acknowledge,
@@ -130,9 +130,12 @@ class Orders:
         if waiting is None or waiting.number != action.number:
             return f"prompt {action.number} does not wait for an answer"
         self.desk.command(f"answer {action.answer} by {order.by}")
-        if action.answer == DONE:
-            waiting.answer, waiting.by = DONE, order.by
-        return ""
+        if action.answer == NOT_YET:
+            return ""
+        refusal = waiting.reply(action.answer)
+        if not refusal:
+            waiting.by = order.by
+        return refusal
 
     def _by_hand(self, order: Order, action: Jog | Tare) -> str:
         """Move one step in manual mode; return "" or the reason for refusing."""

@@ -120,10 +120,12 @@ class Stop(StrictMessage):
 
 @dataclass(frozen=True, slots=True)
 class Answer(StrictMessage):
-    """Answer the prompt with this number; the answer is recorded. "no" leaves the prompt waiting."""
+    """Answer the prompt with this number; the answer is recorded. "no" leaves the prompt waiting. A prompt with a unit
+    also takes a quantity, such as "89.62 mm".
+    """
 
     number: int
-    answer: Literal["yes", "no"] = "yes"
+    answer: Annotated[str, Field(max_length=40), _PLAIN] = "yes"
     command: Literal["answer"] = "answer"
 
 

@@ -97,6 +97,8 @@ class PromptView:
     text: str
     t_s: float
     utc: str
+    unit: str = ""
+    """Of a quantity that may be the answer in place of "yes"; "" for none."""
 
 
 @dataclass(frozen=True, slots=True)

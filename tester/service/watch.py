@@ -190,7 +190,7 @@ class RunWatch:
         if waiting is None:
             return None
         asked = self._asked_utc.setdefault(waiting.number, clock.utc_now())
-        return PromptView(waiting.number, waiting.text, waiting.at_s, asked)
+        return PromptView(waiting.number, waiting.text, waiting.at_s, asked, waiting.question.unit)
 
     def preflight(self) -> tuple[Check, ...]:
         """Return the connected rig's own checks before a start."""

@@ -1,4 +1,4 @@
-"""Answers a question of the run with one of two buttons, ignoring keys typed before they appeared."""
+"""Answers a question of the run by a button or with a quantity, ignoring keys typed before they appeared."""
 
 from __future__ import annotations
 
@@ -8,12 +8,13 @@ from typing import ClassVar
 from textual.binding import Binding, BindingType
 from textual.containers import Horizontal
 from textual.widget import Widget
-from textual.widgets import Button
+from textual.widgets import Button, Input
 
 from tester.base import keys
+from tester.machine.prompts import DONE
 from tester.service.commands import Answer, Hold
 from tester.service.state_view import PromptView
-from tester.tui.dialogs.dialog import Dialog, line
+from tester.tui.dialogs.dialog import Dialog, entry, line
 from tester.tui.formatting import clean
 
 SEEN_S = 0.5
@@ -40,6 +41,8 @@ class PromptDialog(Dialog):
         """Return the question and its buttons; the button without effect comes first."""
         yield line([(clean(self.prompt.text), "bold")])
         yield line("Choose with the arrows, then Enter. The answer is recorded; the run continues at once.")
+        if self.prompt.unit:
+            yield entry("quantity", hint=f"the quantity, in {clean(self.prompt.unit)}", limit=40)
         with Horizontal(classes="buttons"):
             yield Button("Not yet", id="not-yet", compact=True)
             yield Button("Yes, it is done", id="done", compact=True)
@@ -55,7 +58,8 @@ class PromptDialog(Dialog):
         if self.host.scene.now() - self._shown_s < SEEN_S:
             return
         if event.button.id == "done":
-            self.host.order(Answer(self.prompt.number), "answered: yes")
+            answer = self.query_one("#quantity", Input).value.strip() if self.prompt.unit else ""
+            self.host.order(Answer(self.prompt.number, answer or DONE), f"answered: {answer or DONE}")
         self.dismiss(None)
 
     def action_hold(self) -> None:

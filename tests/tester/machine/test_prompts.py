@@ -33,3 +33,17 @@ def test_with_yes_a_wheel_at_a_real_rig_waits_for_a_person_with_the_guard_free_t
     bench.ctx.prompts.real = True
     bench.until(AskAtRest("install wheel 1"), lambda: bench.ctx.prompts.waiting is not None)
     assert bench.ctx.demand.attended
+
+
+@pytest.mark.parametrize(
+    ("answer", "refused"),
+    [("89.62 mm", False), ("89.62", False), ("0.08962 m", False), ("yes", False), ("no", True), ("3 N", True)],
+)
+def test_a_question_for_a_quantity_takes_one_in_its_unit_or_a_yes(answer: str, refused: bool) -> None:
+    prompt = Prompts().ask(1.0, "measure the diameter", unit="mm")
+    assert bool(prompt.reply(answer)) is refused and (prompt.answer is None) is refused
+
+
+def test_a_question_without_a_unit_takes_no_quantity() -> None:
+    prompt = Prompts().ask(1.0, "install wheel 1")
+    assert prompt.reply("89.62 mm") == "expected one of: yes" and prompt.answer is None

@@ -344,6 +344,10 @@ def test_a_prompt_waits_for_its_answer_and_a_no_leaves_it_waiting(tmp_path: Path
         yield stage.order(Answer(1, "no"))
         yield None
         assert stage.views[-1].prompt is not None
+        stage.refused.pop("answer")
+        yield stage.order(Answer(1, "89.6 mm"))
+        yield None
+        assert "expected one of: yes" in stage.refused["answer"] and stage.views[-1].prompt is not None
         yield stage.order(Answer(1))
         yield from stage.until(lambda view: view.prompt is None)
         yield stage.order(Stop())

@@ -121,6 +121,19 @@ def test_a_question_is_answered_by_its_button(house: House) -> None:
     house.play(act)
 
 
+def test_a_quantity_that_a_question_asks_for_is_typed(house: House) -> None:
+    async def act(on: Stage) -> None:
+        asked = with_prompt(a_state())
+        assert asked.prompt is not None
+        await on.show(replace(asked, prompt=replace(asked.prompt, unit="mm")))
+        await on.pilot.press("f3", "enter")
+        on.now[0] += 1.0
+        await on.pilot.press("shift+tab", *"89.62", "tab", "right", "enter")
+        assert await on.ordered(Answer) == Answer(1, "89.62")
+
+    house.play(act)
+
+
 @pytest.mark.parametrize("keys", [["enter"], ["y", "space", "space", "r", "enter"], [*"yes", "enter"], ["escape"]])
 def test_stray_keys_answer_no_question(keys: list[str], house: House) -> None:
     async def act(on: Stage) -> None:

@@ -99,10 +99,11 @@ class AskAtRest:
     After heat the heater's relay and contactor are proved before the wheel stands.
     """
 
-    def __init__(self, text: str, hub_below_c: float = TOUCH.hub_below_c) -> None:
+    def __init__(self, text: str, hub_below_c: float = TOUCH.hub_below_c, *, unit: str = "") -> None:
         """``text``: the question; ``hub_below_c``: hub temperature from which it is put, degC, above that of a touch
-        only for a tool that keeps hands off the wheel."""
+        only for a tool that keeps hands off the wheel; ``unit``: of a quantity that it asks for."""
         self.text = text
+        self.unit = unit
         self.cool = Cool(INSERTED, hub_below_c)
         self.moves: list[CoolDown | HeaterProof | Sequence] = []
         self.ask: Ask | None = None
@@ -121,7 +122,7 @@ class AskAtRest:
         if self.ask is None:
             if not self._at_rest(ctx):
                 return False
-            self.ask = Ask(self._question(ctx))
+            self.ask = Ask(self._question(ctx), unit=self.unit)
         self.answered = self.answered or self.ask.step(ctx)
         return self.answered and self.free.step(ctx)
 

@@ -11,10 +11,11 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from math import hypot, isfinite, pi
+from math import hypot, isfinite, pi, sqrt
 from typing import Final
 
 from tester.analysis.wear_rate import NO_CONDITION, WearCheck
+from tester.base.units import UnitError, parse
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import NAN
@@ -23,6 +24,7 @@ from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, 
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import Straighten
 from tester.kinds.wheel_on_belt.procedures.wheel_life import CheckReference, WheelLife, rubber_c
+from tester.kinds.wheel_on_belt.recipe.measured_wheels import INSTALLED_MM
 from tester.machine.motions import Power, Sequence, Settle
 
 TARE_WAIT_S: Final = 0.4
@@ -121,7 +123,7 @@ class CheckByPerson:
     def __init__(self, before: int = NO_CONDITION) -> None:
         """``before``: the next condition."""
         self.before = before
-        self.ask = AskAtRest(QUESTION)
+        self.ask = AskAtRest(QUESTION, unit="mm")
 
     def resume(self, ctx: Context) -> None:
         """Resume stopping."""
@@ -143,7 +145,7 @@ class CheckByPerson:
         if not least_mm <= found_mm <= most_mm:
             text = f"{found_mm:g} mm cannot be the wheel's diameter (expected {least_mm:g} to {most_mm:g} mm)"
             ctx.journal.event(ctx.now, "wear", text, "warning")
-            self.ask = AskAtRest(f"{text}: {QUESTION}")
+            self.ask = AskAtRest(f"{text}: {QUESTION}", unit="mm")
             return False
         r, wear = ctx.readings, ctx.rig.wear
         mean_c = rubber_c(r.hub_c, r.surface_c)
@@ -151,8 +153,23 @@ class CheckByPerson:
             wheel.by_hand_s = ctx.now
         u_mm = hypot(wear.gauge_mm, wear.growth_mm_per_k * wear.check_rubber_k)
         loss_mm = wheel.installed_mm - (found_mm - wear.growth_mm(mean_c))
+        differs = _compared(ctx, loss_mm, u_mm)
+        if differs:
+            ctx.journal.event(ctx.now, "wear", differs, "warning")
         conclude(ctx, self.before, "person", loss_mm, u_mm, reference_s=wheel.by_hand_s, rubber_c=mean_c)
         return True
+
+
+def _compared(ctx: Context, loss_mm: float, u_mm: float) -> str:
+    """Return in words by how much a measured diameter differs from the believed one, "" within their uncertainty."""
+    wheel = ctx.wheel
+    off_mm = wheel.loss_mm - loss_mm
+    most_mm = 2.0 * hypot(u_mm, wheel.u_mm, INSTALLED_MM / sqrt(3.0))
+    if abs(off_mm) <= most_mm:
+        return ""
+    found_mm = wheel.installed_mm - loss_mm
+    off = f"{off_mm:+.2f} mm, more than their uncertainty of {most_mm:.2f} mm"
+    return f"{found_mm:.2f} mm measured at wheel {wheel.wheel}, {wheel.cold_mm:.2f} mm believed: {off}"
 
 
 MORE_THAN_NEW_MM: Final = 2.0
@@ -162,7 +179,12 @@ MORE_THAN_NEW_MM: Final = 2.0
 def measured_mm(answer: str) -> float | None:
     """Return the number in an answer such as ``89.62 mm`` or ``89,62``; None without a number."""
     match = re.fullmatch(r"\s*(\d{1,4}(?:[.,]\d{1,6})?)\s*(?:mm)?\s*", answer, re.ASCII)
-    return float(match[1].replace(",", ".")) if match is not None else None
+    if match is not None:
+        return float(match[1].replace(",", "."))
+    try:
+        return parse(answer, "mm")
+    except UnitError:
+        return None
 
 
 def conclude(

@@ -159,7 +159,8 @@ def test_a_loss_below_the_resolution_teaches_no_rate(rolled: Bench) -> None:
 
 @pytest.mark.parametrize(
     "answer, found",
-    [("89.62 mm", 89.62), (" 89,62", 89.62), ("89", 89.0), ("yes", None), ("about 89", None), ("", None), ("-3", None)],
+    [("89.62 mm", 89.62), (" 89,62", 89.62), ("89", 89.0), ("yes", None), ("about 89", None), ("", None), ("-3", None),
+     ("0.08962 m", 89.62)],
 )
 def test_the_number_of_an_answer(answer: str, found: float | None) -> None:
     assert measured_mm(answer) == found
@@ -172,7 +173,7 @@ def answered(bench: Bench, *answers: str) -> CheckByPerson:
     for answer in answers:
         count = len(bench.ctx.prompts.asked)
         bench.until(check, lambda count=count: len(bench.ctx.prompts.asked) > count)
-        bench.ctx.prompts.asked[-1].answer = answer
+        assert not bench.ctx.prompts.asked[-1].reply(answer)
     bench.run(check)
     return check
 
@@ -189,6 +190,15 @@ def test_a_person_s_number_is_brought_back_to_the_reference_temperature(bench: B
     warm_mm = 16.0 * bench.ctx.rig.wear.growth_mm_per_k
     assert number(checks(bench)[0], "diameter_mm") == pytest.approx(89.5 - warm_mm)
     assert bench.ctx.wheel.loss_mm == pytest.approx(0.5 + warm_mm)
+
+
+@pytest.mark.parametrize(("answer", "told"), [("90.2 mm", False), ("89.5 mm", True)])
+def test_a_number_beyond_the_uncertainty_of_the_believed_diameter_is_a_warning(
+    bench: Bench, answer: str, told: bool
+) -> None:
+    answered(bench, answer)
+    texts = [text for text in bench.notes.texts("wear") if "believed" in text and "uncertainty" in text]
+    assert bool(texts) is told
 
 
 def test_an_answer_without_number_leaves_no_check(bench: Bench) -> None:
