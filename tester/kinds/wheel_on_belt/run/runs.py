@@ -31,9 +31,10 @@ def split(plan: Plan) -> tuple[Part, ...]:
     last_wheel = max((step.wheel for step in plan.steps if isinstance(step, Install)), default=0)
     if len(starts) == 1 or WheelPlan.of(plan).references:
         return (Part(1, plan, last_wheel),)
+    whole = WheelPlan.of(plan)
     parts: list[Part] = []
     for number, (begin, end) in enumerate(zip(starts, [*starts[1:], len(plan.steps)], strict=True), start=1):
-        steps = plan.steps[begin:end]
+        steps = whole.steps[begin:end]
         if isinstance(steps[0], Cool):
             steps = steps[1:]  # a separate rig starts cold
         steps = with_belts(steps, again=False)  # ... and with a belt of its own

@@ -87,7 +87,7 @@ def test_the_plan_names_the_change_and_counts_its_time() -> None:
 def test_parts_on_rigs_of_their_own_begin_with_their_belt() -> None:
     text = BELTS.replace("[A, B]", "A").replace('- compound: "1#"', '- compound: "1#"\n  - compound: "2#"')
     assert outline(plan_of(text).steps) == "Aigrhaa" + "cirgrhaa"
-    assert [outline(part.plan.steps)[:2] for part in split(plan_of(text))] == ["Ai", "Ai"]
+    assert [outline(WheelPlan.of(part.plan).steps)[:2] for part in split(plan_of(text))] == ["Ai", "Ai"]
 
 
 @pytest.mark.parametrize(("ended", "left"), [(1, "Aiha" + "cBhbb"), (2, "Bihbb"), (3, "Bihb")])
