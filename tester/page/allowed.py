@@ -57,6 +57,8 @@ ALLOWED: Final[Mapping[str, PageRule]] = {
     "plan": PageRule("look"),
     "recipes": PageRule("look"),
     "runs": PageRule("look"),
+    "note": PageRule("control"),
+    "exclude": PageRule("control"),
     "queue_add": PageRule("control"),
     "queue_move": PageRule("control"),
     "queue_skip": PageRule("control"),

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, field
 from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field, JsonValue, TypeAdapter, ValidationError
 from pydantic_core import to_json
 
-from tester.service.commands import MAX_MESSAGE, Stop, StrictMessage
+from tester.service.commands import MAX_MESSAGE, AddNote, ExcludeRepeat, Stop, StrictMessage
 from tester.service.protocol import stop_in
 
 LONGEST = MAX_MESSAGE
@@ -56,6 +57,8 @@ First: TypeAlias = Annotated[PairPage | Enter, Field(discriminator="type")]
 FIRST: TypeAdapter[First] = TypeAdapter(First)
 _COMMAND: TypeAdapter[PageCommand] = TypeAdapter(PageCommand)
 _ASK: TypeAdapter[PageQuestion] = TypeAdapter(PageQuestion)
+_NOTE: TypeAdapter[AddNote] = TypeAdapter(AddNote)
+_EXCLUDE: TypeAdapter[ExcludeRepeat] = TypeAdapter(ExcludeRepeat)
 _OBJECT: TypeAdapter[dict[str, JsonValue]] = TypeAdapter(dict[str, JsonValue])
 
 
@@ -89,6 +92,19 @@ def message_of(text: str | bytes) -> PageCommand | PageQuestion:
         return _COMMAND.validate_json(text)
     except ValidationError as error:
         raise BadFrontError(in_one_line(error), number) from None
+
+
+def edit_of(question: PageQuestion) -> AddNote | ExcludeRepeat | None:
+    """Return a note or an exclusion as the service's command, for a run under way; None for another question, or one
+    that is not valid.
+    """
+    keys = {"condition" if key == "n" else key: value for key, value in question.rest.items()}
+    with suppress(ValidationError):
+        if question.query == "note":
+            return _NOTE.validate_python(keys)
+        if question.query == "exclude":
+            return _EXCLUDE.validate_python(keys)
+    return None
 
 
 def stop_of(text: str | bytes) -> tuple[int, bool] | None:

@@ -29,7 +29,8 @@ class Hub:
         self.visitors: list[Visitor] = []
         self._hello: Hello | None = None
         self._lost = "not connected yet"
-        self._running = ""
+        self.running = ""
+        """Name of the run under way, "" for none."""
         self.run_ended: Callable[[str], None] = lambda _: None
         """Called with the name of a run that has ended."""
 
@@ -48,6 +49,7 @@ class Hub:
             return
         if isinstance(message, Hello):
             self._lost, self._hello = "", message
+            self._look_for_an_end(message.state.run)
             for visitor in self.visitors:
                 self._greet(visitor)
             return
@@ -68,9 +70,9 @@ class Hub:
 
     def _look_for_an_end(self, run: RunView | None) -> None:
         name = run.name if run is not None and run.exit is None and run.folder else ""
-        if self._running and name != self._running:
-            self.run_ended(self._running)
-        self._running = name
+        if self.running and name != self.running:
+            self.run_ended(self.running)
+        self.running = name
 
     def enter(self, visitor: Visitor) -> None:
         """Add a page, and send it the present state."""

@@ -23,6 +23,7 @@ from tester.page.front import (
     PageQuestion,
     PairPage,
     accepted,
+    edit_of,
     first_of,
     in_one_line,
     message_of,
@@ -231,7 +232,11 @@ class Reception:
         return {str(one["path"]) for one in listed if isinstance(one, dict)} if isinstance(listed, list) else set()
 
     async def _ask(self, visitor: Visitor, message: PageQuestion) -> bytes:
-        return await self.answering(visitor.pairing, message)
+        action = edit_of(message)
+        if action is None or action.run != self.hub.running:
+            return await self.answering(visitor.pairing, message)
+        rule_of(action, visitor.pairing.role)
+        return to_json(await visitor.once(action))  # the run's own writer has the record
 
 
 async def _turn_away(connection: ServerConnection, reason: str) -> None:

@@ -76,6 +76,14 @@ class Visitor:
                 drain.add_done_callback(self._working.discard)
         return await self._client.command(action)
 
+    async def once(self, action: Action) -> JsonValue:
+        """Send a command that needs no control under the page's name, over a connection of its own; return its result.
+
+        Raises as ``command`` does.
+        """
+        async with await Client.connect(self.address, name=self.pairing.recorded) as client:
+            return await client.command(action)
+
     async def _drain(self, client: Client) -> None:
         """Read what this connection receives; the hub's link shows it."""
         async for _ in client:

@@ -57,13 +57,7 @@ def record_word(folder: Path, word: Word) -> None:
     Refused while a process works on the run, for a repeat that is not committed, without a reason, and where the folder
     differs from its manifest: a new manifest would hide that. Raises CannotExcludeError, StoreError, OSError.
     """
-    if not word.reason.strip() or len(word.reason) > LONGEST:
-        raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it is recorded")
-    try:
-        plain_text(word.reason, "reason")
-        plain_text(word.operator, "operator")
-    except ValueError as error:
-        raise CannotExcludeError(str(error)) from error
+    _check_words(word)
     with alone_with(folder) as before:
         with RunReader(folder) as reader:
             stored = reader.exclusions()
@@ -84,6 +78,35 @@ def record_word(folder: Path, word: Word) -> None:
             )  # fmt: skip
         if before:  # a run without a manifest has no tables yet: they are made at its end
             write_all(folder)
+
+
+def targets_of(folder: Path, word: Word) -> list[tuple[int, int, int]]:
+    """Return condition, repeat and attempt that a decision on a run under way is about; its writer stores it.
+
+    Repeat 0: each committed repeat of the condition that the decision changes. Raises CannotExcludeError, StoreError.
+    """
+    _check_words(word)
+    with RunReader(folder) as reader:
+        stored, repeats = reader.exclusions(), reader.repeats()
+    if word.repeat:
+        repeat = _wanted(repeats, word)
+        _refuse_contradiction(stored, repeat, word)
+        return [repeat.target]
+    present = standing(stored)
+    found = [r.target for r in repeats if r.condition == word.condition and (r.target in present) is not word.excluded]
+    if not found:
+        raise CannotExcludeError(f"condition {word.condition} has no committed repeat that this would change")
+    return found
+
+
+def _check_words(word: Word) -> None:
+    if not word.reason.strip() or len(word.reason) > LONGEST:
+        raise CannotExcludeError(f"a reason is needed, of at most {LONGEST} characters: it is recorded")
+    try:
+        plain_text(word.reason, "reason")
+        plain_text(word.operator, "operator")
+    except ValueError as error:
+        raise CannotExcludeError(str(error)) from error
 
 
 def record_note(folder: Path, text: str, tags: Iterable[str], by: str) -> None:

@@ -24,17 +24,18 @@ ALONG: Final = {"repeat": ("repeat", ""), "time": ("rig time", "s"), "sliding": 
 """What repeats may be aligned on, with title and unit."""
 EXACT: Final = "repeat"
 """Compared at equal numbers alone: there is nothing between two repeats."""
+_LINEAR: Final = (
+    "Between two repeats of the same condition the coefficient is taken as linear; compared where both runs have it"
+)
 HOW: Final = {
     EXACT: "Compared at equal numbers of repeats of the same condition.",
-    "time": "Between two repeats of the same condition the coefficient is taken as linear; compared where both runs have "
-    "the condition at the same rig time, nowhere else.",
-    "sliding": "Between two repeats of the same condition the coefficient is taken as linear; compared where both runs "
-    "have the condition after the same sliding, nowhere else.",
+    "time": f"{_LINEAR} at the same rig time, nowhere else.",
+    "sliding": f"{_LINEAR} after the same sliding, nowhere else.",
 }  # fmt: skip
 """How runs are compared along each, for people."""
 
 
-class Place(NamedTuple):
+class RepeatPlace(NamedTuple):
     """A repeat's coefficient as measured at ``x``, its standard uncertainty and the degrees of freedom of that."""
 
     x: float
@@ -48,7 +49,7 @@ class Place(NamedTuple):
         return Difference(self.mu, self.u, self.df).expanded
 
 
-class Compared(NamedTuple):
+class ComparedRepeats(NamedTuple):
     """Two runs at ``x``: second less first, and second over first with its expanded uncertainty (95 %)."""
 
     x: float
@@ -58,18 +59,18 @@ class Compared(NamedTuple):
     label: str
 
 
-def place_of(repeat: StoredRepeat, along: str, travel: Travel | None) -> Place:
+def place_of(repeat: StoredRepeat, along: str, travel: Travel | None) -> RepeatPlace:
     """Return where a repeat lies along a word of ``ALONG``; ``travel``: as its record has it. NaN where unknown."""
     x = {
         "repeat": float(repeat.repeat), "time": repeat.result.started_s,
         "sliding": travel.piece_m if travel is not None else float("nan"),
     }[along]  # fmt: skip
-    return Place(x, repeat.result.mu_resultant, repeat.result.uncertainty, float(repeat.result.batches - 1))
+    return RepeatPlace(x, repeat.result.mu_resultant, repeat.result.uncertainty, float(repeat.result.batches - 1))
 
 
 def compared_along(
     matched: Sequence[Pair], along: str, travels: Sequence[dict[int, Travel]]
-) -> Iterator[Compared]:
+) -> Iterator[ComparedRepeats]:
     """Yield the comparison of matched conditions, repeat by repeat; ``travels``: of both runs, by the repeats' keys."""
     for pair in matched:
         if pair.first is None or pair.second is None:
@@ -81,7 +82,7 @@ def compared_along(
                 yield _compared(a, b, words)
 
 
-def _series(measured: Measured, along: str, travels: dict[int, Travel]) -> list[Place]:
+def _series(measured: Measured, along: str, travels: dict[int, Travel]) -> list[RepeatPlace]:
     """Return the repeats of a condition that are in its mean, by their place; of several at one place the first."""
     out = {excluded.position for excluded in measured.result.excluded}
     kept = [repeat for at, repeat in enumerate(measured.repeats) if at not in out]
@@ -90,7 +91,9 @@ def _series(measured: Measured, along: str, travels: dict[int, Travel]) -> list[
     return [by_x[x] for x in sorted(by_x)]
 
 
-def common(first: Sequence[Place], second: Sequence[Place], *, exact: bool) -> Iterator[tuple[Place, Place]]:
+def common(
+    first: Sequence[RepeatPlace], second: Sequence[RepeatPlace], *, exact: bool
+) -> Iterator[tuple[RepeatPlace, RepeatPlace]]:
     """Yield both series at every place of either inside their overlap; ``exact``: only where both have one. Each is
     ordered by ``x``, without doubles.
     """
@@ -103,7 +106,7 @@ def common(first: Sequence[Place], second: Sequence[Place], *, exact: bool) -> I
             yield a, b
 
 
-def _at(series: Sequence[Place], x: float) -> Place:
+def _at(series: Sequence[RepeatPlace], x: float) -> RepeatPlace:
     """Return a series at ``x`` inside it, linear between neighbours; their uncertainties are independent."""
     place = bisect_left(series, x, key=lambda one: one.x)
     after = series[place]
@@ -113,19 +116,19 @@ def _at(series: Sequence[Place], x: float) -> Place:
     weight = (x - before.x) / (after.x - before.x)
     parts = [((1.0 - weight) * before.u, before.df), (weight * after.u, after.df)]
     standard = hypot(*(u for u, _ in parts))
-    return Place(x, before.mu + weight * (after.mu - before.mu), standard, _df(parts, standard))
+    return RepeatPlace(x, before.mu + weight * (after.mu - before.mu), standard, _df(parts, standard))
 
 
-def _compared(a: Place, b: Place, label: str) -> Compared:
+def _compared(a: RepeatPlace, b: RepeatPlace, label: str) -> ComparedRepeats:
     parts = [(a.u, a.df), (b.u, b.df)]
     standard = hypot(a.u, b.u)
     found = Difference(b.mu - a.mu, standard, _df(parts, standard))
     if not a.mu:
-        return Compared(a.x, found, float("nan"), float("nan"), label)
+        return ComparedRepeats(a.x, found, float("nan"), float("nan"), label)
     ratio = b.mu / a.mu
     of_ratio = [(b.u / a.mu, b.df), (ratio * a.u / a.mu, a.df)]
     spread = hypot(*(u for u, _ in of_ratio))
-    return Compared(a.x, found, ratio, Difference(ratio, spread, _df(of_ratio, spread)).expanded, label)
+    return ComparedRepeats(a.x, found, ratio, Difference(ratio, spread, _df(of_ratio, spread)).expanded, label)
 
 
 def _df(parts: Sequence[tuple[float, float]], standard: float) -> float:

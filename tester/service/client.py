@@ -47,7 +47,7 @@ from tester.service.protocol import (
     encode,
     from_server,
 )
-from tester.service.results_view import ResultsView
+from tester.service.results_view import GivenResults
 from tester.service.state_view import PlanView, StateView
 from tester.service.stop_call import takes_stop
 
@@ -97,7 +97,7 @@ class Client:
         self.state: StateView = hello.state
         self.plan: PlanView | None = hello.plan
         self.queue: QueueView | None = hello.queue
-        self.results: ResultsView | None = hello.results
+        self.results: GivenResults | None = hello.results
         self.events: deque[Event] = deque(hello.events, maxlen=EVENTS_KEPT)
         self.complete = hello.complete
         """Whether no event is missing between those seen before and ``events``."""

@@ -13,11 +13,13 @@ from tester.service.commands import (
     QueueOrder,
     Release,
     ResumeRun,
+    RunEdit,
     RunRecipe,
     Stop,
     Tare,
 )
 from tester.service.queue_desk import QueueDesk
+from tester.service.run_edits import RunEdits
 from tester.service.service_link import Order
 from tester.service.state_publisher import Desk
 
@@ -34,6 +36,7 @@ class Orders:
         self.ending = False
         self.queue: QueueDesk | None = None
         """The queue, once the service has one."""
+        self.edits = RunEdits(desk)
         desk.obey, desk.stop, desk.lost_control = self.obey, self.stop, self.lost_control
 
     def obey(self, order: Order) -> None:
@@ -49,6 +52,8 @@ class Orders:
                 self.desk.gateway.refuse(order, "this service has no queue")
             else:
                 self.queue.obey(order, action)
+        elif isinstance(action, RunEdit):
+            self.edits.obey(order)
         elif isinstance(action, Arm):
             self._arm(order, action)
         elif isinstance(action, Acknowledge):

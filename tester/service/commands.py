@@ -66,7 +66,7 @@ class RunRecipe(RecipeCommand):
 
     ``recipe``: a file on the service's machine or the name of a shipped recipe; with ``text``, which is the recipe
     itself, only its name. ``rig``: "" = the service's. ``speed``: rig seconds per second, None = as fast as possible;
-    simulated rigs only. ``yes``: answer prompts without asking. ``experiment``: free fields, stored.
+    simulated rigs only. ``yes``: answer prompts without asking.
     """
 
     seed: Annotated[int, Field(ge=0, lt=2**63)] = 0
@@ -309,13 +309,39 @@ class QueueCheck(StrictMessage):
     command: Literal["queue_check"] = "queue_check"
 
 
+@dataclass(frozen=True, slots=True)
+class AddNote(StrictMessage):
+    """Write a note, or tags (a minus takes one back), on the run under way. Once accepted it is on record."""
+
+    run: Name
+    text: Note = ""
+    tags: Annotated[tuple[Name, ...], Field(max_length=20)] = ()
+    command: Literal["note"] = "note"
+
+
+@dataclass(frozen=True, slots=True)
+class ExcludeRepeat(StrictMessage):
+    """Leave a committed repeat of the run under way out of its mean (``repeat`` 0: each of the condition), or include
+    it again. Once accepted it is on record. Result: ``{"repeats": number}``.
+    """
+
+    run: Name
+    condition: Annotated[int, Field(ge=1)]
+    reason: Note
+    repeat: Annotated[int, Field(ge=0)] = 0
+    include: bool = False
+    command: Literal["exclude"] = "exclude"
+
+
+RunEdit: TypeAlias = AddNote | ExcludeRepeat
+"""Decisions of people on the run under way; they move nothing and need no control."""
 QueueEdit: TypeAlias = QueueAdd | QueueMove | QueueDrop | QueueStand
 """Changes of the queue that begin nothing; they need no control."""
 QueueOrder: TypeAlias = QueueEdit | QueueSkip | QueueStart
 RigAction: TypeAlias = (
-    RunRecipe | ResumeRun | Hold | Release | Acknowledge | Stop | Answer | Arm | Jog | Tare | QueueOrder
+    RunRecipe | ResumeRun | Hold | Release | Acknowledge | Stop | Answer | Arm | Jog | Tare | QueueOrder | RunEdit
 )
-"""Commands for the rig's owner; all but ``stop`` and changes of the queue require control."""
+"""Commands for the rig's owner; all but ``stop``, changes of the queue, notes and exclusions require control."""
 QueueQuery: TypeAlias = QueueList | QueueCheck
 """Questions that the gateway answers from the newest queue."""
 Query: TypeAlias = CheckRecipe | ShowPlan | ListRecipes | ListRuns

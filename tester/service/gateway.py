@@ -32,6 +32,7 @@ from tester.service.commands import (
     QueueEdit,
     QueueQuery,
     RigAction,
+    RunEdit,
     ShowPlan,
     Stop,
     TakeControl,
@@ -319,8 +320,8 @@ class Gateway:
             self._order(guest, message.id, action)
 
     def _order(self, guest: Guest, number: int, action: RigAction) -> None:
-        """Forward a command to the rig's owner if this client may send it. All may send STOP and edit the queue."""
-        if not isinstance(action, Stop | QueueEdit) and (refusal := self.guests.refusal(guest)):
+        """Forward a command to the rig's owner if this client may send it."""
+        if not isinstance(action, Stop | QueueEdit | RunEdit) and (refusal := self.guests.refusal(guest)):
             self._answer(guest, number, refusal)
             return
         self.guests.forget_mode()
@@ -332,7 +333,6 @@ class Gateway:
             self._answer(guest, number, "too many commands at once: wait for their answers")
 
     def _ask(self, guest: Guest, number: int, question: Query) -> None:
-        """Start answering a question, unless too many questions of this client are open."""
         if guest.questions >= QUESTIONS:
             self._answer(guest, number, f"{QUESTIONS} questions are being worked out already: wait for their answers")
             return

@@ -16,12 +16,12 @@ from tester.results.run_results import RunResults, results_of
 from tester.results.so_far import OpenRepeat, growth, open_repeat
 from tester.run.folder import PARTS
 from tester.service.asked_process import RefusedQuestionError
-from tester.service.results_view import ConditionValue, GrowingView, GrownValue, OpenValue, ResultsView
+from tester.service.results_view import ConditionValue, GivenResults, GrowingView, GrownValue, OpenValue
 from tester.store.record_file import DATABASE
 from tester.store.run_folders import under_way
 from tester.store.run_reader import RunReader
 
-VIEW: TypeAdapter[ResultsView] = TypeAdapter(ResultsView)
+VIEW: TypeAdapter[GivenResults] = TypeAdapter(GivenResults)
 _STATE = (
     "SELECT (SELECT count(*) FROM repeat WHERE status NOT IN ('open', 'void')) AS repeats,"
     " (SELECT count(*) FROM condition WHERE started_s IS NOT NULL) AS begun,"
@@ -41,7 +41,7 @@ class PresentResults:
         self._kept: dict[Path, tuple[object, RunResults]] = {}
 
     def answer(self, run: JsonValue) -> JsonValue:
-        """Return the results of a run, as ``ResultsView``. Raises RefusedQuestionError."""
+        """Return the results of a run, as ``GivenResults``. Raises RefusedQuestionError."""
         folder = self._runs / str(run)
         if not isinstance(run, str) or Path(run).name != run or not (folder / DATABASE).is_file():
             raise RefusedQuestionError("no such run")
@@ -54,10 +54,10 @@ class PresentResults:
             raise RefusedQuestionError(in_words(error)) from error
         values = {value.condition: value for view in views for value in view.conditions}
         growing = next((view.growing for view in reversed(views) if view.growing is not None), None)
-        whole = ResultsView(run, tuple(values[number] for number in sorted(values)), growing, not running)
+        whole = GivenResults(run, tuple(values[number] for number in sorted(values)), growing, not running)
         return VIEW.dump_python(whole, mode="json")
 
-    def _view(self, folder: Path, run: str, *, running: bool) -> ResultsView:
+    def _view(self, folder: Path, run: str, *, running: bool) -> GivenResults:
         with RunReader(folder) as reader:
             state = (running, *(tuple(row.items()) for row in reader.rows(_STATE)))
             kept = self._kept.get(folder)
@@ -67,7 +67,7 @@ class PresentResults:
             return results_view(reader, kept[1], run, running=running)
 
 
-def results_view(reader: RunReader, results: RunResults, run: str, *, running: bool) -> ResultsView:
+def results_view(reader: RunReader, results: RunResults, run: str, *, running: bool) -> GivenResults:
     """Return the results of a run of some name as its record shows them now; ``running``: whether a process works on
     it. Raises StoreError.
     """
@@ -77,7 +77,7 @@ def results_view(reader: RunReader, results: RunResults, run: str, *, running: b
     values.sort(key=lambda value: value.condition)
     present = next((row for row in rows if row.measured is not None and row.measured.condition.status is None), None)
     growing = grown_view(reader, results, table, present) if running and present is not None else None
-    return ResultsView(run, tuple(values), growing, not running)
+    return GivenResults(run, tuple(values), growing, not running)
 
 
 def grown_view(

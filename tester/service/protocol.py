@@ -17,7 +17,7 @@ from pydantic_core import from_json
 from tester.base.screen import MachineView
 from tester.queue.view import QueueView
 from tester.service.commands import VERSION, ClientMessage, Command, Join, Stop
-from tester.service.results_view import ResultsView
+from tester.service.results_view import GivenResults
 from tester.service.state_view import PlanView, StateView
 
 SNAPSHOT_S = 0.25
@@ -68,7 +68,7 @@ class Hello:
     complete: bool
     trend: tuple[tuple[float | None, ...], ...]
     queue: QueueView | None = None
-    results: ResultsView | None = None
+    results: GivenResults | None = None
     type: Literal["hello"] = "hello"
 
 
@@ -116,7 +116,7 @@ class ResultsMessage:
     slow client receives only the newest.
     """
 
-    results: ResultsView
+    results: GivenResults
     type: Literal["results"] = "results"
 
 

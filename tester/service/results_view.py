@@ -52,7 +52,7 @@ class GrowingView:
 
 
 @dataclass(frozen=True, slots=True)
-class ResultsView:
+class GivenResults:
     """The results of a run: conditions that have begun, by number; ``over``: whether no process works on the run."""
 
     run: str

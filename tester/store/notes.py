@@ -57,11 +57,20 @@ def checked(note: RunNote) -> RunNote:
 def add_note(folder: Path, note: RunNote) -> None:
     """Add a note to the record in ``folder``; it is on disk when this returns. Raises StoreError, ValueError."""
     note = checked(note)
-    data = json.dumps({"by": note.by, "tags": note.tags, "manifest_before": note.manifest_before}, ensure_ascii=False)
     with amended(folder) as database:
         last, t_s = database.execute("SELECT coalesce(max(sequence), 0), coalesce(max(t_s), 0.0) FROM event").fetchone()
-        event = StoredEvent(last + 1, t_s, note.utc, NOTE, "info", note.text or f"tags: {', '.join(note.tags)}", data)
+        event = StoredEvent(last + 1, t_s, note.utc, NOTE, "info", words_of(note), data_of(note))
         database.execute(*insert("event", columns_in(event)))
+
+
+def words_of(note: RunNote) -> str:
+    """Return the text of a note's event."""
+    return note.text or f"tags: {', '.join(note.tags)}"
+
+
+def data_of(note: RunNote) -> str:
+    """Return the data of a note's event, as JSON."""
+    return json.dumps({"by": note.by, "tags": note.tags, "manifest_before": note.manifest_before}, ensure_ascii=False)
 
 
 def notes_of(reader: RunReader) -> list[RunNote]:

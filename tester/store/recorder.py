@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus, SoakCheck
 from tester.analysis.wear_rate import WearCheck
 from tester.store.chain import Cell
-from tester.store.journal_records import StoredEvent, StoredParameter
+from tester.store.journal_records import StoredEvent, StoredExclusion, StoredParameter
 from tester.store.kind_rows import axis_rows, budget_rows, setpoint_columns
 from tester.store.record_schema import TIMES
 from tester.store.records import (
@@ -210,9 +210,7 @@ class Recorder:
         self._write(self._change("piece", state, piece=piece), urgent=True)
 
     def travelled(self, piece: int, travel: Travel, repeat_key: int = 0) -> None:
-        """Store the travel of counterface and piece: at the beginning of a repeat, or (key 0) as the state for a
-        resumed run.
-        """
+        """Store the travel of counterface and piece: at a repeat's beginning, or (key 0) as a resumed run's state."""
         of: dict[str, Cell] = {"piece": piece, "repeat_id": repeat_key}
         self._write(insert("travel", of, "INSERT OR IGNORE"), update("travel", columns_in(travel), of))
 
@@ -286,9 +284,7 @@ class Recorder:
     # The journal
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
-        """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two are committed at
-        once.
-        """
+        """Record an event, in order. Severities: debug, info, warning, alarm, trip; the last two commit at once."""
         if self.on_event is not None:
             self.on_event(t_s, kind, text, severity)
         self._events += 1
@@ -300,6 +296,10 @@ class Recorder:
         data = json.dumps({"on": surface, "travels_m": dict(travels_m)})
         before = travels_m.get(surface, 0.0)
         self.event(t_s, SURFACE_EVENT, f"{surface} is on, after {before:.0f} m under load", data=data)
+
+    def decision(self, exclusion: StoredExclusion) -> Ticket:
+        """Store a person's decision on a committed repeat."""
+        return self._write(self._row("exclusion", exclusion, id=None), urgent=True)
 
     def prompt(self, t_s: float, text: str) -> int:
         """Store a prompt and return its number."""

@@ -19,7 +19,7 @@ from tester.service.present_results import results_view
 from tester.service.protocol import Event
 from tester.service.recorded_steps import RecordedStep, left_of, plan_of, present_of, recorded_steps
 from tester.service.recorded_values import recorded_setpoint, recorded_value
-from tester.service.results_view import ResultsView
+from tester.service.results_view import GivenResults
 from tester.service.state_view import (
     ClientsView,
     DiskView,
@@ -70,7 +70,7 @@ class Playback:
     events: tuple[Event, ...]
     event_times: tuple[float, ...]
     steps: tuple[RecordedStep, ...]
-    results: ResultsView
+    results: GivenResults
 
     @property
     def length_s(self) -> float:
@@ -184,7 +184,7 @@ def load(folder: Path) -> Playback:
             _thinned(reader, spacing_s),
             conditions, repeats, {r.key: tuple(reader.bursts(r.key)) for r in repeats}, events,
             tuple(event.t_s for event in events),
-            recorded_steps(events, run.rig_seconds, conditions), 
+            recorded_steps(events, run.rig_seconds, conditions),
             results_view(reader, results, run.info.name, running=False),
         )  # fmt: skip
 

@@ -25,7 +25,7 @@ from tester.service.protocol import (
     ServerMessage,
 )
 from tester.service.protocol import Snapshot as SnapshotMessage
-from tester.service.results_view import ResultsView
+from tester.service.results_view import GivenResults
 from tester.service.state_view import Alarm, PlanView, RunView, StateView
 
 if TYPE_CHECKING:
@@ -75,7 +75,7 @@ class ScreenScene:
     controls: bool = False
     view_only: bool = False
     replayed: bool = False
-    results: ResultsView | None = None
+    results: GivenResults | None = None
     """What the run on display has given so far; None until that is known."""
     table: Stored | None = None
     """The table of a run that has ended, as `tester show` prints it; None until it has been read."""
@@ -91,7 +91,7 @@ class ScreenScene:
         return self.state is not None and not self.lost and self.age_s <= STALE_S
 
     @property
-    def given(self) -> ResultsView | None:
+    def given(self) -> GivenResults | None:
         """Return the results of the run on display; None where they are of another run, or not known."""
         run = self.state.run if self.state is not None else None
         found = self.results

@@ -12,7 +12,7 @@ from tester.page.stored.run_cache import QuestionError
 from tester.results.columns import unit_of
 from tester.results.compared import Pair, pairs
 from tester.results.measured_tables import repeats_table
-from tester.results.repeats_compared import ALONG, HOW, Compared, compared_along, place_of
+from tester.results.repeats_compared import ALONG, HOW, ComparedRepeats, compared_along, place_of
 from tester.results.run_results import RunResults
 from tester.results.table_rows import TableRow
 from tester.store.records import Travel
@@ -77,7 +77,7 @@ def _along(runs: Sequence[tuple[RunReader, RunResults]], along: str) -> dict[str
     }
 
 
-def _beside(one: Compared, y: float, u: float) -> dict[str, Any]:
+def _beside(one: ComparedRepeats, y: float, u: float) -> dict[str, Any]:
     return {"x": one.x, "y": finite(y), "u": finite(u), "label": one.label}
 
 

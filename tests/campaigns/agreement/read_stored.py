@@ -1,5 +1,5 @@
-"""What the page in a browser is sent of a stored run, its questions `run` and `condition`, and what every screen is sent
-while a run is under way: through JSON and back.
+"""What the page in a browser is sent of a stored run (its questions `run` and `condition`), and what every screen is
+sent while a run is under way: through JSON and back.
 """
 
 from __future__ import annotations
@@ -43,7 +43,7 @@ def read_stored(record: Record, output: str) -> Facts:
 
 
 def read_live(record: Record, worn: str, output: str) -> Facts:
-    """Return the facts of the service's message ``results``: what conditions gave, and how each had grown at its end."""
+    """Return the facts of the service's message ``results``: what conditions gave, how each had grown at its end."""
     from tester.results.conditions_table import conditions_table
     from tester.results.run_results import results_of
     from tester.service.present_results import PresentResults, grown_view

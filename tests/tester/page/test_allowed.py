@@ -21,7 +21,7 @@ def classes() -> list[type[Any]]:
 
 FILLED = {
     "recipe": "quickstart", "run": "r", "axis": "press", "direction": 1, "number": 1, "id": 1, "revision": 1,
-    "start": "18:00", "end": "08:00",
+    "start": "18:00", "end": "08:00", "condition": 1,
 }  # fmt: skip
 
 
@@ -39,7 +39,7 @@ NEVER = {"arm", "attend", "jog", "tare", "answer", "frames"}
 BY_ROLE = {
     "look": {"check", "plan", "recipes", "runs"},
     "stop": {"stop"},
-    "control": {"hold", "release", "control", "run", "resume", "ack"},
+    "control": {"hold", "release", "control", "run", "resume", "ack", "note", "exclude"},
 }
 
 

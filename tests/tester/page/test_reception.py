@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import os
 from collections.abc import Awaitable, Callable
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from tester.page import reception
 from tester.page.desk_call import NewCode, Revoke
 from tester.page.page_process import PageOptions, check_options
 from tester.queue.calendar import new_key, revoke_key
-from tester.service.commands import Hold
+from tester.service.commands import AddNote, ExcludeRepeat, Hold
 from tester.service.stop_lane import StopLane
 from tests.tester.page.stage import PageStage
 from tests.tester.queue.test_calendar import view
@@ -115,6 +116,39 @@ def test_control_holds_under_the_pages_name(tmp_path: Path) -> None:
         assert (await page.command({"command": "hold"}))["type"] == "accepted"
         order = stage.fake.orders[-1]
         assert order.action == Hold() and order.name == "page 1: Anna's phone"
+
+    play(tmp_path, story)
+
+
+@pytest.mark.parametrize(
+    ("query", "keys", "action"),
+    [
+        ("note", {"text": "swept", "tags": ["x"]}, AddNote("run", "swept", ("x",))),
+        ("exclude", {"n": 3, "repeat": 2, "reason": "debris"}, ExcludeRepeat("run", 3, "debris", 2)),
+    ],
+)
+def test_a_note_or_exclusion_on_the_run_under_way_goes_to_the_service_with_the_pages_name(
+    query: str, keys: dict[str, Any], action: AddNote | ExcludeRepeat, tmp_path: Path
+) -> None:
+    async def story(stage: PageStage) -> None:
+        view = state()
+        assert view.run is not None
+        stage.fake.show(replace(view, run=replace(view.run, name="run", folder="/runs/run")))
+        stage.fake.results["exclude"] = {"repeats": 1}
+        page = await stage.paired("control")
+        await page.service("hello")
+        answer = await page.ask(query, run="run", **keys)
+        assert answer["type"] == "accepted" and answer["result"] == stage.fake.results.get(query)
+        order = stage.fake.orders[-1]
+        assert order.action == action and order.name == "page 1: Anna's phone"
+        assert stage.fake.presence is None or not stage.fake.presence.controller  # it asks for no control
+        stage.fake.orders.clear()
+        looks = await stage.paired("look")
+        await looks.service("hello")
+        refused = await looks.ask(query, run="run", **keys)
+        assert refused["type"] == "refused" and "needs the role control" in refused["reason"]
+        other = await page.ask(query, run="another", **keys)
+        assert other["type"] == "refused" and not stage.fake.orders
 
     play(tmp_path, story)
 

@@ -9,13 +9,13 @@ import pytest
 
 from tester.analysis.quantiles import t_quantile
 from tester.results.compared import pairs
-from tester.results.repeats_compared import Place, common, compared_along
+from tester.results.repeats_compared import RepeatPlace, common, compared_along
 from tester.results.run_results import results_of
 from tester.store.run_reader import RunReader
 from tests.tester.results.test_so_far import running
 
-FIRST = [Place(0.0, 0.50, 0.010, 9.0), Place(10.0, 0.60, 0.010, 9.0), Place(30.0, 0.80, 0.030, 9.0)]
-SECOND = [Place(5.0, 0.70, 0.020, 9.0), Place(20.0, 0.40, 0.020, 9.0), Place(40.0, 0.50, 0.020, 9.0)]
+FIRST = [RepeatPlace(0.0, 0.50, 0.010, 9.0), RepeatPlace(10.0, 0.60, 0.010, 9.0), RepeatPlace(30.0, 0.80, 0.030, 9.0)]
+SECOND = [RepeatPlace(5.0, 0.70, 0.020, 9.0), RepeatPlace(20.0, 0.40, 0.020, 9.0), RepeatPlace(40.0, 0.50, 0.020, 9.0)]
 
 
 def test_the_grid_is_every_place_of_either_inside_the_overlap_alone() -> None:
@@ -35,18 +35,18 @@ def test_runs_that_do_not_overlap_have_nothing_in_common() -> None:
 
 
 def test_one_repeat_is_compared_at_its_own_place() -> None:
-    ((a, b),) = common(FIRST, [Place(20.0, 0.4, 0.02, 9.0)], exact=False)
+    ((a, b),) = common(FIRST, [RepeatPlace(20.0, 0.4, 0.02, 9.0)], exact=False)
     assert (a.x, a.mu, b.mu) == (20.0, pytest.approx(0.7), 0.4)
 
 
 def test_numbers_of_repeats_are_compared_only_where_both_have_one() -> None:
-    first = [Place(float(n), 0.5, 0.01, 9.0) for n in (1, 2, 3)]
-    second = [Place(float(n), 0.6, 0.01, 9.0) for n in (1, 3, 4)]
+    first = [RepeatPlace(float(n), 0.5, 0.01, 9.0) for n in (1, 2, 3)]
+    second = [RepeatPlace(float(n), 0.6, 0.01, 9.0) for n in (1, 3, 4)]
     assert [a.x for a, _ in common(first, second, exact=True)] == [1.0, 3.0]
 
 
 def test_a_repeat_without_u_has_a_difference_without_u() -> None:
-    ((a, b),) = common([Place(1.0, 0.5, nan, -1.0)], [Place(1.0, 0.6, 0.01, 9.0)], exact=False)
+    ((a, b),) = common([RepeatPlace(1.0, 0.5, nan, -1.0)], [RepeatPlace(1.0, 0.6, 0.01, 9.0)], exact=False)
     assert isnan(a.expanded) and b.expanded == pytest.approx(t_quantile(0.975, 9.0) * 0.01)
 
 

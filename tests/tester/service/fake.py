@@ -23,7 +23,7 @@ from tester.service.gateway import Gateway
 from tester.service.listening import listening
 from tester.service.protocol import Accepted, Event, Refused, encode
 from tester.service.queries import Queries
-from tester.service.results_view import ResultsView
+from tester.service.results_view import GivenResults
 from tester.service.service_link import FROM_GATEWAY, Order, Presence
 from tester.service.state_view import PlanView, StateView
 from tests.tester.service.views import MACHINE
@@ -81,7 +81,7 @@ class FakeService:
         """Send a plan."""
         self.gateway.take(b"p" + to_json(plan))
 
-    def give(self, results: ResultsView) -> None:
+    def give(self, results: GivenResults) -> None:
         """Send results, as the process that works them out does."""
         self.gateway.results.publish(to_json(results))
 

@@ -13,7 +13,7 @@ from textual.pilot import Pilot
 
 from tester.service.commands import Action, CheckRecipe, ListRuns, Query, ShowPlan
 from tester.service.queries import Queries
-from tester.service.results_view import ResultsView
+from tester.service.results_view import GivenResults
 from tester.service.state_view import PlanView, StateView
 from tester.tui.app import TesterApp
 from tester.tui.host import TuiOptions
@@ -88,7 +88,7 @@ class Stage:
         raise AssertionError(f"{what}: never\n{self.text()}")
 
     async def show(
-        self, view: StateView, plan: PlanView | None = None, results: ResultsView | None = None
+        self, view: StateView, plan: PlanView | None = None, results: GivenResults | None = None
     ) -> None:
         """Have the service send a state, and wait until the screen has it."""
         if plan is not None:

@@ -9,7 +9,7 @@ from tester.results.columns import Output
 from tester.results.conditions_table import conditions_table
 from tester.results.run_results import results_of
 from tester.service.present_results import grown_view, results_view
-from tester.service.results_view import OpenValue, ResultsView
+from tester.service.results_view import GivenResults, OpenValue
 from tester.service.state_view import PlanStep, PlanView, StateView
 from tester.store.run_reader import RunReader
 from tester.tui.pages.run_page import RunPage
@@ -42,13 +42,13 @@ def steps(done: int) -> PlanView:
     return PlanView("a", len(TITLES), 1, listed, 180.0)
 
 
-def given(folder: Path) -> ResultsView:
+def given(folder: Path) -> GivenResults:
     """Return what the service sends of a stored run."""
     with RunReader(folder) as reader:
         return results_view(reader, results_of(reader), folder.name, running=False)
 
 
-def under_way(folder: Path, n: int) -> ResultsView:
+def under_way(folder: Path, n: int) -> GivenResults:
     """Return the same while condition ``n`` is under way."""
     with RunReader(folder) as reader:
         results = results_of(reader)

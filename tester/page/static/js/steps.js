@@ -11,7 +11,7 @@ const LISTED = 60;
  * Return the list of a plan's steps.
  * @param {Object|null} plan PlanView
  * @param {Object|null} progress ProgressView
- * @param {Object|null} given ResultsView, for what a step gave
+ * @param {Object|null} given GivenResults, for what a step gave
  * @returns {HTMLElement}
  */
 export function stepList(plan, progress, given) {

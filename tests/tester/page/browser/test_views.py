@@ -12,7 +12,7 @@ from pydantic_core import to_json
 from tester.queue.items import End, ItemState
 from tester.queue.view import ItemView, QueueView
 from tester.service.commands import Hold, QueueDrop, QueueMove, QueueSkip, QueueStand, QueueStart, RunRecipe
-from tester.service.results_view import ConditionValue, GrowingView, GrownValue, OpenValue, ResultsView
+from tester.service.results_view import ConditionValue, GivenResults, GrowingView, GrownValue, OpenValue
 from tester.service.state_view import PlanStep, PlanView
 from tests.tester.page.browser import records
 from tests.tester.page.browser.stage import Front
@@ -115,12 +115,12 @@ def test_the_coefficient_has_its_uncertainty_as_it_grows(on: Front, desktop: Bro
     on.call(lambda: on.stage.fake.show(run_state()))
     words = "1#, 300 mm/s, 200 N, 40 degC"
     first = GrowingView(150, words, 3, (), OpenValue(1, 0.6987, 12))
-    on.call(lambda: on.stage.fake.give(ResultsView(records.RUN, (), first, over=False)))
+    on.call(lambda: on.stage.fake.give(GivenResults(records.RUN, (), first, over=False)))
     expect(page.locator(".mu")).to_have_text("µ 0.699")
     expect(page.get_by_text(f"{words}: repeat 1 so far: 0.699 over 12 rev; no U yet")).to_be_visible()
     grown = (GrownValue(1, 0.7, None, "0.700! ± –"), GrownValue(2, 0.704, 0.029, "0.704! ± 0.029"))
     second = GrowingView(150, words, 3, grown, OpenValue(3, 0.71, 4))
-    on.call(lambda: on.stage.fake.give(ResultsView(records.RUN, (), second, over=False)))
+    on.call(lambda: on.stage.fake.give(GivenResults(records.RUN, (), second, over=False)))
     expect(page.locator(".mu")).to_have_text("µ 0.704! ± 0.029")
     expect(page.get_by_text("after 2 of 3 repeats. U: 95 %; repeat 3 so far: 0.710 over 4 rev")).to_be_visible()
     on.call(lambda: on.stage.fake.event("repeat", "repeat 2"))
@@ -136,7 +136,7 @@ def test_steps_have_what_their_conditions_gave(on: Front, desktop: BrowserContex
               ConditionValue(7, 0.7, 0.03, "0.700? ± 0.030", "swings", over=True))  # fmt: skip
     on.call(lambda: on.stage.fake.plan(PlanView("a", 4, 3, (done, now), 120.0)))
     on.call(lambda: on.stage.fake.show(run_state()))
-    on.call(lambda: on.stage.fake.give(ResultsView(records.RUN, values, growing, over=False)))
+    on.call(lambda: on.stage.fake.give(GivenResults(records.RUN, values, growing, over=False)))
     expect(page.locator(".step.done")).to_contain_text("0.700? ± 0.030 ? swings")
     expect(page.locator(".step.now")).to_contain_text("0.610! ± 0.050")
 
