@@ -39,6 +39,12 @@ class Orders:
         self.edits = RunEdits(desk)
         desk.obey, desk.stop, desk.lost_control = self.obey, self.stop, self.lost_control
 
+    def look(self) -> None:
+        """Carry on with the queue, and with notes and exclusions."""
+        if self.queue is not None:
+            self.queue.look()
+        self.edits.look()
+
     def obey(self, order: Order) -> None:
         """Carry out an order, or refuse it with a reason."""
         action = order.action

@@ -103,7 +103,7 @@ class Service:
         with caught(lambda _number, _frame: self.end(), asking, (HANG_UP, *SUSPENDING)):
             desk.latch_again()  # before the first order
             self.queue.open()
-            desk.look = self._meanwhile
+            desk.look = self.orders.look
             desk.interrupted = self._aside(lambda: tuple(interrupted_runs(self.options.runs)))
             self._look_back()
             for name in desk.interrupted:
@@ -124,11 +124,6 @@ class Service:
         self.queue.close()
         desk.tell("service", "the service ends")
         desk.show()
-
-    def _meanwhile(self) -> None:
-        """Carry on with the queue, and with notes and exclusions."""
-        self.queue.look()
-        self.orders.edits.look()
 
     def _look_back(self) -> None:
         """Read from stored runs what they left on the rig and what they show about it."""

@@ -1,4 +1,4 @@
-"""`tester page --lan` with a certificate of a real authority: who trusts it works as at the machine, nothing else does."""
+"""`tester page --lan` with a certificate of a real authority: who trusts it works as at the machine, no other does."""
 
 from __future__ import annotations
 
@@ -115,7 +115,7 @@ def test_a_browser_that_does_not_trust_the_authority_sends_nothing(tmp_path: Pat
     async def story(stage: PageStage, _authority: Authority) -> None:
         other = Authority(tmp_path, ELSEWHERE)
         for trust in (other.trusting(), ssl.create_default_context()):
-            with pytest.raises(ssl.SSLCertVerificationError, match="self-signed|unable to get"):
+            with pytest.raises(ssl.SSLCertVerificationError, match=r"self-signed|unable to get"):
                 await opened(stage, trust)
 
     play(tmp_path, story)
@@ -134,7 +134,7 @@ def test_a_certificate_for_another_address_is_refused_by_the_browser(tmp_path: P
 def test_with_a_certificate_nothing_is_answered_in_the_clear(tmp_path: Path) -> None:
     async def story(stage: PageStage, _authority: Authority) -> None:
         for address in (LAN, "127.0.0.1"):
-            with pytest.raises(Exception) as caught:  # noqa: PT011, B017 - however the handshake breaks
+            with pytest.raises(Exception) as caught:  # however the handshake breaks
                 await opened(stage, None, address)
             assert not isinstance(caught.value, AssertionError)
             reader, writer = await asyncio.open_connection(address, stage.port)
@@ -153,7 +153,7 @@ def test_with_a_certificate_nothing_is_answered_in_the_clear(tmp_path: Path) -> 
 def test_over_tls_another_origin_is_refused_too(tmp_path: Path) -> None:
     async def story(stage: PageStage, authority: Authority) -> None:
         for origin in (f"http://{LAN}:{stage.port}", "https://evil.example", None):
-            with pytest.raises(Exception, match="403|HTTP"):
+            with pytest.raises(Exception, match=r"403"):
                 await opened(stage, authority.trusting(), origin=origin)
 
     play(tmp_path, story)
