@@ -39,6 +39,8 @@ AT_LEAST = 20_000
 """A run with fewer samples gets no file, because reading them again takes no longer [measured: 20 ms]."""
 AT_ONCE = 256
 """Blocks that are read before they are worked on: 5 MB."""
+TOGETHER = 32
+"""Blocks whose columns are computed in one call: many are short, and a call costs more than their samples."""
 THREADS = 2
 """Threads that decompress: zlib and numpy leave the interpreter to others meanwhile."""
 
@@ -124,7 +126,7 @@ class Pyramid:
         """Return a narrow window from the samples themselves."""
         sql = "SELECT * FROM sample_block WHERE last_s >= ? AND first_s <= ? ORDER BY id"
         of = _Blocks(reader, self.columns)
-        blocks = [of.buckets(row, 1) for row in reader.rows(sql, (from_s, to_s))]
+        blocks = [of.samples(row) for row in reader.rows(sql, (from_s, to_s))]
         if not blocks:
             return _nothing(len(self.columns))
         found = _joined(blocks)
@@ -180,7 +182,7 @@ def _made(reader: RunReader, columns: Sequence[DrawnColumn], after: int) -> Buck
     made: list[Buckets] = []
     with ThreadPoolExecutor(THREADS) as pool:
         while chunk := list(islice(rows, AT_ONCE)):
-            made += pool.map(of.eights, chunk)
+            made += pool.map(of.eights, [chunk[at : at + TOGETHER] for at in range(0, len(chunk), TOGETHER)])
     return _joined(made) if made else _nothing(len(columns))
 
 
@@ -193,20 +195,32 @@ class _Blocks:
         self._conditions = reader.conditions() if any(column.axis for column in columns) else []
         self._columns = columns
 
-    def eights(self, row: Row) -> Buckets:
-        """Return a block's buckets of the first level. Raises StoreError."""
-        return self.buckets(row, FACTOR)
+    def eights(self, rows: Sequence[Row]) -> Buckets:
+        """Return the blocks' buckets of the first level; the last of a block may have fewer samples. Raises StoreError.
+        """
+        tables = [self._table(row) for row in rows]
+        found = self._drawn(np.concatenate(tables, axis=1))
+        counts = [table.shape[1] for table in tables]
+        ends = np.cumsum(counts)
+        first = np.concatenate([np.arange(e - n, e, FACTOR) for e, n in zip(ends, counts, strict=True)])
+        return Buckets(
+            found.t_s[first], np.fmin.reduceat(found.low, first, axis=1), np.fmax.reduceat(found.high, first, axis=1)
+        )
 
-    def buckets(self, row: Row, size: int) -> Buckets:
-        """Return a block's buckets of ``size`` samples; the last may have fewer. Raises StoreError."""
-        names = self._quantities.names
+    def samples(self, row: Row) -> Buckets:
+        """Return a block's samples, each a bucket of its own. Raises StoreError."""
+        return self._drawn(self._table(row))
+
+    def _table(self, row: Row) -> NDArray[np.float64]:
         try:
-            table = unpack_array(blob(row, "data"), whole(row, "rows"), len(names))
+            return unpack_array(blob(row, "data"), whole(row, "rows"), len(self._quantities.names))
         except ValueError as error:
             raise StoreError(f"{self._path}, block {row['id']}: {error}") from error
-        samples = dict(zip(names, table, strict=True))
+
+    def _drawn(self, table: NDArray[np.float64]) -> Buckets:
+        samples = dict(zip(self._quantities.names, table, strict=True))
         values = drawn(self._columns, samples, self._quantities, self._conditions).astype(np.float32)
-        return Buckets(samples[TIME].copy(), values, values).gathered(size)
+        return Buckets(samples[TIME].copy(), values, values)
 
 
 def _joined(parts: Sequence[Buckets]) -> Buckets:
