@@ -3,31 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import partial
-from typing import Annotated, ClassVar, Literal, TypeAlias
+from typing import Annotated, Literal, TypeAlias
 
-from pydantic import AfterValidator, ConfigDict, Field
+from pydantic import Field
 
-from tester.base.words import plain_text
+from tester.service.message_parts import Name, Note, PathText, RecipeText, Speed, StrictMessage
 
 VERSION = 2
 """Version of this protocol. It increases with any change that an older client cannot ignore."""
 MAX_MESSAGE = 400_000
 """Longest message that the service accepts, bytes: the largest recipe, escaped."""
-
-_PLAIN = AfterValidator(partial(plain_text, where=""))
-Name = Annotated[str, Field(max_length=200), _PLAIN]
-PathText = Annotated[str, Field(max_length=4096), _PLAIN]
-Note = Annotated[str, Field(max_length=2000), _PLAIN]
-RecipeText = Annotated[str, Field(max_length=262_144)]
-Speed = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)]
-
-
-class StrictMessage:
-    """A message in which an unknown key is refused: a misspelt option must not be ignored."""
-
-    __slots__ = ()
-    __pydantic_config__: ClassVar[ConfigDict] = ConfigDict(extra="forbid")
 
 
 @dataclass(frozen=True, slots=True)
