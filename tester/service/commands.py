@@ -7,7 +7,7 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
-from tester.service.message_parts import Name, Note, PathText, RecipeText, Speed, StrictMessage
+from tester.service.message_parts import Name, Note, PathText, RecipeText, Reply, Speed, StrictMessage
 
 VERSION = 2
 """Version of this protocol. It increases with any change that an older client cannot ignore."""
@@ -110,7 +110,7 @@ class Answer(StrictMessage):
     """
 
     number: int
-    answer: Annotated[str, Field(max_length=40), _PLAIN] = "yes"
+    answer: Reply = "yes"
     command: Literal["answer"] = "answer"
 
 

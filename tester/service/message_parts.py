@@ -13,6 +13,7 @@ _PLAIN = AfterValidator(partial(plain_text, where=""))
 Name = Annotated[str, Field(max_length=200), _PLAIN]
 PathText = Annotated[str, Field(max_length=4096), _PLAIN]
 Note = Annotated[str, Field(max_length=2000), _PLAIN]
+Reply = Annotated[str, Field(max_length=40), _PLAIN]
 RecipeText = Annotated[str, Field(max_length=262_144)]
 Speed = Annotated[float, Field(gt=0, le=1e6, allow_inf_nan=False)]
 

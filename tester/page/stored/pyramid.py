@@ -14,7 +14,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cached_property
 from io import BytesIO
-from itertools import islice
+from itertools import accumulate, islice
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -201,8 +201,9 @@ class _Blocks:
         tables = [self._table(row) for row in rows]
         found = self._drawn(np.concatenate(tables, axis=1))
         counts = [table.shape[1] for table in tables]
-        ends = np.cumsum(counts)
-        first = np.concatenate([np.arange(e - n, e, FACTOR) for e, n in zip(ends, counts, strict=True)])
+        ends = accumulate(counts)
+        firsts = [at for end, count in zip(ends, counts, strict=True) for at in range(end - count, end, FACTOR)]
+        first: NDArray[np.intp] = np.array(firsts, dtype=np.intp)
         return Buckets(
             found.t_s[first], np.fmin.reduceat(found.low, first, axis=1), np.fmax.reduceat(found.high, first, axis=1)
         )
