@@ -13,6 +13,7 @@ from tester.kinds.wheel_on_belt.image.axes import AXES, held_by
 HELD = AXES.setpoint("1#", slip_velocity=0.3, load=200.0, temperature=40.0)
 OFF: dict[str, AxisValue] = {
     "slip_velocity": -0.2, "load": 250.0, "sideslip": 10.0, "camber": 5.0, "temperature": 55.0, "wheel_speed": 1.0,
+    "surface": "corundum 80",
 }  # fmt: skip
 
 
@@ -22,7 +23,7 @@ def test_the_paper_s_conditions_are_told_without_camber_and_wheel_speed() -> Non
 
 def test_every_axis_off_its_default_is_told() -> None:
     text = condition_words(HELD.but(**OFF))
-    assert text == "1#, -200 mm/s, 250 N, sideslip 10 deg, camber 5 deg, 55 degC, wheel 1 m/s"
+    assert text == "1#, -200 mm/s, 250 N, sideslip 10 deg, camber 5 deg, 55 degC, wheel 1 m/s, on corundum 80"
 
 
 @pytest.mark.parametrize("axis", AXES.table, ids=[axis.name for axis in AXES])

@@ -58,7 +58,7 @@ SHARED = SMALL + "  - {name: b, slip_velocity: 300 mm/s, load: 100 N, temperatur
 MERGED = [{
     "grid": "b", "measured_in": "load",
     "conditions": [{"slip_velocity_m_s": 0.3, "load_n": 100.0, "sideslip_deg": 0.0, "camber_deg": 0.0,
-                    "temperature_c": 40.0, "wheel_speed_m_s": 0.8}],
+                    "temperature_c": 40.0, "wheel_speed_m_s": 0.8, "surface": ""}],
 }]  # fmt: skip
 
 

@@ -53,10 +53,10 @@ def resumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("resumed")
     ask = Prompts.ask
 
-    def dying(self: Prompts, now: float, text: str, *, near: bool = True) -> Prompt:
+    def dying(self: Prompts, now: float, text: str, *, near: bool = True, unit: str = "") -> Prompt:
         if B in text:
             raise StoppedError
-        return ask(self, now, text, near=near)
+        return ask(self, now, text, near=near, unit=unit)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Prompts, "ask", dying)

@@ -89,7 +89,7 @@ def test_a_file_is_read_like_a_text(tmp_path: Path) -> None:
             "slip_velocity",
             "slip_velocty",
             'r.yaml:8:5: unknown key "slip_velocty", did you mean slip_velocity? (expected one of name, slip_velocity, '
-            "load, temperature, sideslip, camber, wheel_speed, repeats, until, min_valid, window, extend_to, "
+            "load, temperature, sideslip, camber, wheel_speed, surface, repeats, until, min_valid, window, extend_to, "
             "temperature_band, soak, measure_again, max_bursts, wear_check, both_directions, run_in_after_reversal)",
         ),
         (
