@@ -11,7 +11,16 @@ from pydantic_core import to_json
 
 from tester.queue.items import End, ItemState
 from tester.queue.view import ItemView, QueueView
-from tester.service.commands import Hold, QueueDrop, QueueMove, QueueSkip, QueueStand, QueueStart, RunRecipe
+from tester.service.commands import (
+    ExcludeRepeat,
+    Hold,
+    QueueDrop,
+    QueueMove,
+    QueueSkip,
+    QueueStand,
+    QueueStart,
+    RunRecipe,
+)
 from tester.service.results_view import ConditionValue, GivenResults, GrowingView, GrownValue, OpenValue
 from tester.service.state_view import PlanStep, PlanView
 from tests.tester.page.browser import records
@@ -248,8 +257,10 @@ def test_a_repeat_is_excluded_with_its_reason(on: Front, desktop: BrowserContext
     page.get_by_role("dialog").get_by_label("Reason").fill("dust on the belt")
     page.get_by_role("dialog").get_by_role("button", name="Exclude").click()
     expect(page.locator(".told")).to_contain_text("on record")
-    [given] = [given for query, given in on.played.asked if query == "exclude"]
-    assert {**given, "run": ""} == {"run": "", "n": 2, "repeat": 2, "reason": "dust on the belt"}
+    run = views.state().run
+    assert run is not None
+    [given] = [order.action for order in on.stage.fake.orders if isinstance(order.action, ExcludeRepeat)]
+    assert given == ExcludeRepeat(run.name, 2, "dust on the belt", 2)
 
 
 # -- results, overlay ------------------------------------------------------------------------------------------------
