@@ -53,7 +53,7 @@ speed_option = click.option(
 @click.option("--answer-within", "within", default="", metavar="TIME",
               help="Stop the item once a question has waited so long, e.g. 2 h, with the guard closed.")  # fmt: skip
 @click.option("--unanswered", type=click.Choice(["stand", "skip"]), default="stand", show_default=True,
-              help="What then: the queue stands, or goes on if the next item asks for no person.")  # fmt: skip
+              help="What then: the queue stands, or continues if the next item asks for no person.")  # fmt: skip
 @connect_option
 @json_option
 def add(

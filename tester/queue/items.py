@@ -89,7 +89,7 @@ class Needs:
 class Unanswered:
     """An item is stopped in a controlled way once a question has waited for ``within_s``, s of wall time.
 
-    ``skip``: then the queue goes on, if the next item asks nothing of a person; otherwise it stands.
+    ``skip``: then the queue continues if the next item asks nothing of a person; otherwise it waits for a person.
     """
 
     within_s: float
@@ -107,7 +107,7 @@ class QueueItem:
     ``origin``: where the recipe was read, whose folder is searched for materials; "" for a text. ``rig``: the rig's
     name. ``speed``: rig seconds per second of a simulated rig, None = as fast as possible. ``yes``: prompts are
     answered without a person, on a simulated rig only. ``by``: who added it. ``after``: ends after which the queue
-    goes on. ``unanswered``: what ends a question that a person does not answer; None: it waits as long as it takes.
+    continues. ``unanswered``: what ends a question that a person does not answer; None: it waits as long as it takes.
     """
 
     id: int

@@ -207,7 +207,7 @@ class QueueAdd(StrictMessage):
     Options as of ``run``; the recipe is frozen now. ``after``: ends after which the queue continues. ``copies``: how
     many times, each an item of its own; on a simulated rig each has the next seed. ``answer_within_s``: wall time after
     which an item with an unanswered question is stopped, None = never. Then the queue stands, or with ``unanswered`` =
-    ``skip`` goes on if the next item asks nothing of a person. Result: ``{"id", "ids", "revision"}``.
+    ``skip`` continues if the next item asks nothing of a person. Result: ``{"id", "ids", "revision"}``.
     """
 
     recipe: PathText

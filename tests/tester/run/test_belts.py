@@ -1,4 +1,4 @@
-"""A whole run with two belts on the twin; a run that dies in the middle of a change, and goes on."""
+"""A whole run with two belts on the twin; a run that dies in the middle of a change, and is resumed."""
 
 from __future__ import annotations
 
