@@ -95,7 +95,7 @@ class Resumed(Stage):
         config, whole = rig_of(overrides), WheelPlan.of(plan_of(text, overrides))
         first = next(step.condition for step in whole.conditions())
         wheel = Mounted(1, 1, 1, config.geometry.wheel_diameter_mm - 0.3, 200.0, ground=True, last_condition=first)
-        stand = Stand(frozenset({first}), frozenset({first}), (wheel,), 200.0)
+        stand = Stand(frozenset({first}), frozenset({first}), (wheel,), {"": 200.0})
         point = ResumePoint(finished=False, origin_s=0.0, stand=stand, conditions={}, reference_tare=None, session=2)
         self.plan = remaining(whole, stand)
         ports, rig, attendant = simulated_ports(config, 0, None, FaultyCanWire)
