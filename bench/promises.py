@@ -111,7 +111,7 @@ def table2(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
 
 
 def grosch(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
-    """Return how a master curve compares, most of which is waiting for a chamber."""
+    """Return how a master curve compares; most of its rig time passes while the chamber settles."""
     text = grosch_text(trees[0].folder, extent.quick)
     costs = in_turns(trees, text, extent.rounds, extent.folder, "--rig", "grosch")
     name = "grosch" + (", two temperatures, seven speeds" if extent.quick else "")

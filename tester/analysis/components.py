@@ -137,7 +137,7 @@ def mean_of(values: Sequence[PartValue]) -> PartValue:
 
 
 def between(values: Sequence[PartValue]) -> float:
-    """Return the standard deviation by which values truly differ, 0 where their uncertainties explain their scatter.
+    """Return the standard deviation between the true values, 0 where their uncertainties explain their scatter.
 
     ``values``: at least one, each with an uncertainty above 0.
     """

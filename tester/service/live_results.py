@@ -15,7 +15,7 @@ from pydantic_core import from_json
 from tester.service.asked_process import AskedProcess, RefusedQuestionError
 
 GROWS_S: Final = 2.0
-"""Period at which a value that grows is worked out while somebody looks, s: samples are committed once a second."""
+"""Period at which a value that grows is worked out while a client is there, s: samples are committed once a second."""
 LEAST_S: Final = 0.3
 """Shortest time between two questions, s: several events come together, and a commit may be a little later."""
 WITHIN_S: Final = 60.0
@@ -49,7 +49,7 @@ class LiveResults:
             self._wake.set()
 
     async def work(self) -> None:
-        """Ask while somebody looks, until the task is cancelled."""
+        """Ask while a client is there, until the task is cancelled."""
         try:
             while True:
                 with suppress(TimeoutError):

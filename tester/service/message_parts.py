@@ -1,4 +1,4 @@
-"""The parts of which messages to the service are made: texts with their limits, and refusing unknown keys."""
+"""Parts of messages to the service: texts with their limits, and a base that refuses unknown keys."""
 
 from __future__ import annotations
 
