@@ -119,6 +119,7 @@ class Bench:
             code = CPU_TO_FILE.format(str(cpu)) + code
         paths = [str(ROOT), *filter(None, [os.environ.get("PYTHONPATH")])]
         environment = {**os.environ, "PYTHONPATH": os.pathsep.join(paths), "PYTHONIOENCODING": "utf-8"}
+        environment.pop("PYTHONDONTWRITEBYTECODE", None)  # it would compile every module in every process
         with out.open("wb") as to_out, err.open("wb") as to_err:
             process = subprocess.Popen(
                 [sys.executable, "-c", code, *arguments],

@@ -17,7 +17,9 @@ ROOT = Path(__file__).parents[3]
 PASS_S = 0.015
 """CPU time of `python3 -c pass` on the machine for which the limits are stated (s)."""
 _LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "runs", "build", "dist", "__pycache__", "*.egg-info", ".*_cache")
-_NOT_HANDED_ON = frozenset({"PYTHONPATH", "VIRTUAL_ENV", "FRICTION_TESTER_COMPILE", "PIP_CACHE_DIR"})
+_NOT_HANDED_ON = frozenset(
+    {"PYTHONPATH", "PYTHONDONTWRITEBYTECODE", "VIRTUAL_ENV", "FRICTION_TESTER_COMPILE", "PIP_CACHE_DIR"}
+)
 
 
 @dataclass(frozen=True, slots=True)
