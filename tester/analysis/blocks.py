@@ -68,7 +68,7 @@ class BlockCounter:
 
     __slots__ = (
         "_at", "_averaged", "_block", "_burst", "_burst_at", "_counted_at", "_gate_at", "_key", "_key_at", "_limit",
-        "_origin", "_rows", "_step", "_table", "_time_at", "_traced", "blocks", "seconds", "trace",
+        "_origin", "_rows", "_step", "_table", "_time_at", "_traced", "blocks", "seconds", "trace", "transient",
     )  # fmt: skip
 
     def __init__(self, quantities: Quantities) -> None:
@@ -76,6 +76,8 @@ class BlockCounter:
         self.blocks: list[Block] = []
         self.seconds = 0.0
         """Accepted seconds in ``blocks``."""
+        self.transient: int | None = None
+        """Number of leading blocks that are transient, once there are enough of them to tell."""
         self.trace = Trace(quantities)
         """The samples in ``blocks``."""
         self._traced = [quantities.index(name) if name else -1 for name in columns_of(quantities)]

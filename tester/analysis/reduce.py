@@ -186,6 +186,6 @@ def collected(counter: BlockCounter, window: Window, *, alone: bool) -> bool:
     have = float(len(blocks)) if window.revolutions is not None else counter.seconds
     if have >= window.extend_to:
         return True
-    if not filled(blocks, window):
+    if not filled(counter, window):
         return False
     return not alone or fit_drift([counted(blocks, window)], window).stable

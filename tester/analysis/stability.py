@@ -18,7 +18,7 @@ from dataclasses import dataclass
 from math import inf, isfinite
 from typing import Final
 
-from tester.analysis.blocks import Block
+from tester.analysis.blocks import Block, BlockCounter
 from tester.base.quantities import temperatures
 
 REPEAT_WINDOWS = 1.5
@@ -104,10 +104,14 @@ def enough(blocks: Sequence[Block], window: Window) -> bool:
     return window.seconds is None or seconds_of(blocks) >= window.seconds
 
 
-def filled(blocks: Sequence[Block], window: Window) -> bool:
+def filled(counter: BlockCounter, window: Window) -> bool:
     """Return whether the blocks after the transient fill all that a repeat of this window collects."""
-    wanted = window.of_repeat
-    return enough(blocks, wanted) and enough(blocks[left_out(blocks, window) :], wanted)
+    blocks, wanted = counter.blocks, window.of_repeat
+    if not enough(blocks, wanted):
+        return False
+    if counter.transient is None:
+        counter.transient = left_out(blocks, window)  # only once: later blocks never change it
+    return enough(blocks[counter.transient :], wanted)
 
 
 def left_out(blocks: Sequence[Block], window: Window) -> int:

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from math import exp, sqrt
 from random import Random
 
-from tester.analysis.blocks import Block, resultant
+from tester.analysis.blocks import Block, BlockCounter, resultant
 from tester.base.quantities import Means
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 
@@ -60,3 +60,10 @@ def correlated(random: Random, deviation: float = 0.01, tau_s: float = 0.3) -> I
             x = share * x + random.gauss(0.0, step)
             total += x
         yield total / 35.0
+
+
+def counter_of(collected: list[Block]) -> BlockCounter:
+    """Return the counter of a repeat that has collected these blocks."""
+    counter = BlockCounter(QUANTITIES)
+    counter.blocks.extend(collected)
+    return counter

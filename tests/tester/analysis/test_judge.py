@@ -16,7 +16,7 @@ from tester.analysis.judge import judge, trend_of
 from tester.analysis.reduce import counted, reduce_repeat
 from tester.analysis.results import Judgement, RepeatResult, RepeatStatus
 from tester.analysis.stability import Window, filled
-from tests.tester.analysis.series import blocks, correlated
+from tests.tester.analysis.series import blocks, correlated, counter_of
 
 MU = 0.7
 N = 45
@@ -29,7 +29,8 @@ def repeat(seed: int, drift: float = 0.0, *, level: float = 1.0, settles: float 
         MU * level * (1.0 + x + drift * (i - 22) / 30 + settles * exp(-(at + i) / 94.0)) for i, x in enumerate(noise)
     ]
     made = blocks(values, per_burst=15)
-    return list(counted(next(made[:n] for n in range(N, 2 * N) if filled(made[:n], Window(30))), Window(30)))
+    long_enough = next(made[:n] for n in range(N, 2 * N) if filled(counter_of(made[:n]), Window(30)))
+    return list(counted(long_enough, Window(30)))
 
 
 def result_of(used: list[Block], *, alone: bool = False) -> RepeatResult:

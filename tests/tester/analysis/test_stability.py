@@ -6,7 +6,7 @@ from math import exp
 from random import Random
 
 from tester.analysis.stability import Window, enough, filled, left_out, truncation
-from tests.tester.analysis.series import REVOLUTION_S, blocks
+from tests.tester.analysis.series import REVOLUTION_S, blocks, counter_of
 
 MU = 0.7
 
@@ -60,16 +60,28 @@ def test_what_comes_later_does_not_change_the_transient() -> None:
 
 def test_a_repeat_collects_one_and_a_half_windows() -> None:
     made = blocks([MU] * 50)
-    assert [filled(made[:n], Window(30)) for n in (30, 44, 45)] == [False, False, True]
+    assert [filled(counter_of(made[:n]), Window(30)) for n in (30, 44, 45)] == [False, False, True]
     seconds = 10 * REVOLUTION_S
-    assert [filled(made[:n], Window(None, seconds - 0.01)) for n in (10, 14, 15)] == [False, False, True]
+    assert [filled(counter_of(made[:n]), Window(None, seconds - 0.01)) for n in (10, 14, 15)] == [False, False, True]
 
 
 def test_a_transient_does_not_count_towards_it() -> None:
     made = blocks(settling(70))
     transient = left_out(made[:45], Window(30))
     assert transient > 0
-    assert [filled(made[:n], Window(30)) for n in (45, 44 + transient, 45 + transient)] == [False, False, True]
+    counts = (45, 44 + transient, 45 + transient)
+    assert [filled(counter_of(made[:n]), Window(30)) for n in counts] == [False, False, True]
+
+
+def test_a_repeat_finds_its_transient_once() -> None:
+    made = blocks(settling(70))
+    counter = counter_of(made[:45])
+    answers = [filled(counter, Window(30))]
+    for block in made[45:]:
+        counter.blocks.append(block)
+        answers.append(filled(counter, Window(30)))
+    assert answers == [filled(counter_of(made[:n]), Window(30)) for n in range(45, 71)]
+    assert counter.transient == left_out(made, Window(30))
 
 
 def test_coefficients_without_a_value_have_no_transient() -> None:

@@ -168,8 +168,8 @@ class MeasureTrackRepeat(MeasuredRepeat):
                 self.counted_s = ctx.now
         here = len(self.counter.blocks) - self.before
         late = ctx.now - self.counted_s > max(BLIND * self.stretch_m / self.speed_m_s, 5.0)
-        blocks, window = self.counter.blocks, self.condition.window
-        if len(blocks) >= window.extend_to or (filled(blocks, window) and (self.way > 1 or not self.both)):
+        counter, window = self.counter, self.condition.window
+        if len(counter.blocks) >= window.extend_to or (filled(counter, window) and (self.way > 1 or not self.both)):
             self._end(ctx, Ending.COMPLETE, "")
         elif target.stationary and late:
             self._end(ctx, Ending.INCOMPLETE, f"nothing counted for {ctx.now - self.counted_s:.0f} s")
