@@ -56,40 +56,41 @@ LATE_S = 0.005
 class Pace:
     """A clock that starts at its creation, with waits until a time on it."""
 
-    def __init__(self) -> None:
-        """Start at 0."""
+    def __init__(self, times: float = 1.0) -> None:
+        """Start at 0. ``times``: seconds on it in a second, above 1 only for a simulated rig as fast."""
+        self.times = times
         self._origin_s = monotonic()
 
     def now(self) -> float:
-        """Return the seconds since the start."""
-        return monotonic() - self._origin_s
+        """Return the time since the start, s of this clock."""
+        return (monotonic() - self._origin_s) * self.times
 
     def wait_until(self, due_s: float) -> bool:
-        """Return at ``due_s`` (s); True where an urgent event has ended the wait."""
-        sleep_until(self._origin_s + due_s)
+        """Return at ``due_s`` (s of this clock); True where an urgent event has ended the wait."""
+        sleep_until(self._origin_s + due_s / self.times)
         return False
 
 
 class UrgentPace(Pace):
     """The pace of a run on a machine: receivers stamp arrivals by its clock, and an urgent event ends a wait."""
 
-    def __init__(self, catch_up_s: float = 0.0) -> None:
-        """Start at 0. ``catch_up_s``: time that receiving threads need to fetch the data that arrived during a
-        suspension."""
-        super().__init__()
+    def __init__(self, catch_up_s: float = 0.0, times: float = 1.0) -> None:
+        """Start at 0. ``catch_up_s``: real time that receiving threads need to fetch the data that arrived during a
+        suspension; ``times``: as for a ``Pace``."""
+        super().__init__(times)
         self._urgent = Event()
         self._catch_up_s = catch_up_s
 
     def wait_until(self, due_s: float) -> bool:
-        """Return at ``due_s`` (s), or with True as soon as an urgent event has arrived since the last wait began.
+        """Return at ``due_s`` (s of this clock), or with True once an urgent event has come since the last wait began.
 
         After a late wait the receiving threads get a moment first: otherwise the scan would treat data as stale that
         has already arrived.
         """
-        delay = due_s - self.now()
+        delay = (due_s - self.now()) / self.times
         if delay > 0.0 and not self._urgent.is_set():
             self._urgent.wait(delay)
-        if self._catch_up_s and self.now() - due_s > LATE_S:
+        if self._catch_up_s and (self.now() - due_s) / self.times > LATE_S:
             sleep_until(monotonic() + self._catch_up_s)
         urgent = self._urgent.is_set()
         self._urgent.clear()

@@ -126,7 +126,7 @@ hands_option = click.option(
 operator_option = click.option("--operator", default="", metavar="NAME", help="Who runs the test; stored with the run.")
 lapse_option = click.option(
     "--speed", type=SpeedType(), default="max", metavar="max|X",
-    help="Simulated rig: as fast as it goes, or X times real time.",
+    help="Simulated rig: as fast as it goes, or X times real time; in another process, as fast as it lives there.",
 )  # fmt: skip
 bus_log_option = click.option(
     "--bus-log", default=None, metavar="DIR", type=click.Path(path_type=Path),

@@ -156,9 +156,9 @@ def run_real_time(
             wall = pace.now()
             if due < wall:
                 statistics.overruns += 1
-            if wall >= poll_due - LEAVE_S:  # poll now instead of waking up again
+            if wall >= poll_due - LEAVE_S * pace.times:  # poll now instead of waking up again
                 poll(now)
-                poll_due = wall + POLL_S
+                poll_due = wall + POLL_S * pace.times
     return pace.now()
 
 
@@ -206,12 +206,13 @@ def _wait(deadline: float, now: float, poll: Callable[[float], None], poll_due: 
 
 def _wait_paced(pace: Pace, due: float, now: float, poll: Callable[[float], None], poll_due: float) -> float:
     """Wait until ``due`` or something urgent, polling meanwhile; return when the next poll is due."""
+    poll_s, leave_s = POLL_S * pace.times, LEAVE_S * pace.times
     while True:
         at = pace.now()
-        if at >= poll_due and due - at > LEAVE_S:
+        if at >= poll_due and due - at > leave_s:
             poll(now)
-            poll_due = at + POLL_S
-        last = max(poll_due, at) + LEAVE_S >= due
+            poll_due = at + poll_s
+        last = max(poll_due, at) + leave_s >= due
         if pace.wait_until(due if last else poll_due) or last:
             return poll_due
 

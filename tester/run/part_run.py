@@ -176,7 +176,7 @@ def _execute(
         spoilable = {"faulty": True} if faults else {}
         surface = part.plan.metadata.get("abrasive", "")
         ports, world, attendant = connect_ports(
-            rig, job.seed, log, recipe=job.folder / "recipe.yaml", surface=surface, **spoilable
+            rig, job.seed, log, recipe=job.folder / "recipe.yaml", surface=surface, times=job.lapse or 1.0, **spoilable
         )
         truth = truth_of(world, rig.plant) if world is not None else None
         if truth is not None:

@@ -35,11 +35,12 @@ def connect_ports(
     faulty: bool = False,
     recipe: Path | None = None,
     surface: str = "",
+    times: float = 1.0,
 ) -> tuple[Ports, SimRig | None, Any]:
     """Open the wires to the rig: simulated in this process (with a faulty bus if ``faulty``), or real.
 
-    ``recipe`` and ``surface``: as in ``simulated_ports``. Returns the wires, the simulated rig, and the attendant
-    (tester.machine.run_parts).
+    ``recipe`` and ``surface``: as in ``simulated_ports``; ``times``: as in ``hardware_ports``. Returns the wires, the
+    simulated rig, and the attendant (tester.machine.run_parts).
     """
     if rig.can.interface == "sim":
         from sim.faults.can import FaultyCanWire
@@ -48,12 +49,15 @@ def connect_ports(
 
         wire = FaultyCanWire if faulty else CanWire
         return simulated_ports(rig, seed, log, wire, recipe=recipe, surface=surface)
-    return hardware_ports(rig, log), None, NoAttendant()
+    return hardware_ports(rig, log, times), None, NoAttendant()
 
 
-def hardware_ports(rig: Rig, log: BusLog | None) -> Ports:
-    """Open every wire of a rig file; raises BusLost for the first that fails, and then leaves none open."""
-    pace = UrgentPace(CATCH_UP_S)
+def hardware_ports(rig: Rig, log: BusLog | None, times: float = 1.0) -> Ports:
+    """Open every wire of a rig file; raises BusLost for the first that fails, and then leaves none open.
+
+    ``times``: rig seconds in a second, above 1 only for a simulated rig in another process that lives as fast.
+    """
+    pace = UrgentPace(CATCH_UP_S, times)
     with ExitStack() as opened:
         bus = open_can(rig.can.interface, rig.can.channel, rig.can.bitrate, pace.now, pace.hurry)
         opened.callback(bus.close)

@@ -27,6 +27,7 @@ class SessionOptions:
     out: Path = Path("runs")
     seed: int = 0
     lapse: float | None = None
+    """Rig seconds per second; None = as fast as possible, in real time on wires."""
     bus_log: Path | None = None
     operator: str = ""
     jobs: int = 1
@@ -54,6 +55,11 @@ def refusal(options: SessionOptions, rig: Rig, screen: ReportScreen) -> str:
     """Return why the options do not fit the rig or the screen; "" if they do."""
     if refused := refused_hands(options.hands, rig):
         return refused
+    if not rig.simulated and options.lapse not in (None, 1.0) and not counts_as_simulated(rig):
+        return (
+            f"--speed {options.lapse:g}: this rig is real; only a simulated rig in another process can live faster, and"
+            " its rig file demands the simulator's identity of every drive"
+        )
     jobs = options.jobs
     if jobs > 1 and not rig.simulated:
         return f"--jobs {jobs}: only a simulated rig can run several parts at a time, and this rig is real"

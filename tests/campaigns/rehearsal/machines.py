@@ -11,22 +11,26 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+import yaml
+
 from tests.campaigns.acceptance.bench import COMMAND, ROOT
 
-SEED = 1
 READY_S = 60.0
-EXAMPLE = ROOT / "tests" / "extension" / "examples" / "kind"
+EXAMPLE = Path(__file__).parents[2] / "extension" / "examples" / "kind"
 
 
 @dataclass(frozen=True, slots=True)
 class Rehearsed:
-    """A machine and its recipe. ``by_hand``: a person raises its arm after a kill."""
+    """A machine and its recipe. ``by_hand``: a person raises its arm after a kill; ``times``: how fast it and its
+    runs live.
+    """
 
     name: str
     rig: str
     recipe: str
     by_hand: bool = False
     example: bool = False
+    times: float = 1.0
     """Whether its kind is that of the example package; its rig file is then written beside the recipe."""
 
 
@@ -69,12 +73,26 @@ grids: [{name: speed, speed: 20 mm/s}]
 EVERY = (DISC, BLOCK, WHEEL, SLEDGE)
 
 
+def fast() -> tuple[Rehearsed, ...]:
+    """Return the disc's packaged recipe whole, and the block's on one track at four temperatures, 20 times as fast."""
+    files = [ROOT / "recipes" / f"{name}.yaml" for name in ("pin-on-disc", "grosch")]
+    disc, block = (file.read_text(encoding="utf-8") for file in files)
+    recipe = yaml.safe_load(block)
+    (clean, _) = recipe["grids"]
+    recipe["grids"] = [clean | {"surface": "silicon carbide", "temperature": [f"{c} degC" for c in (-10, 10, 30, 50)]}]
+    text = yaml.safe_dump(recipe, sort_keys=False)
+    return (
+        Rehearsed("pin-on-disc, whole, 20 times as fast", "pin-on-disc", disc, by_hand=True, times=20.0),
+        Rehearsed("grosch at four temperatures, 20 times as fast", "grosch", text, times=20.0),
+    )
+
+
 class Machine:
     """`tester sim` in a folder, at addresses that stay the same when it is started again."""
 
-    def __init__(self, folder: Path, of: Rehearsed, door: str) -> None:
-        """Choose addresses and write the recipe; ``door``: TCP or ptys."""
-        self.folder, self.of = folder, of
+    def __init__(self, folder: Path, of: Rehearsed, door: str, seed: int) -> None:
+        """Choose addresses and write the recipe; ``door``: TCP or ptys; ``seed``: of the simulated machine."""
+        self.folder, self.of, self.seed = folder, of, seed
         folder.mkdir(parents=True)
         (folder / "recipe.yaml").write_text(of.recipe, encoding="utf-8")
         self.rig = of.rig
@@ -91,7 +109,8 @@ class Machine:
 
     def start(self) -> None:
         """Start it, and wait until it is ready; raises ValueError with what it wrote if it is not."""
-        arguments = ["sim", "--rig", self.rig, "--seed", str(SEED), "--control", self.console.partition(":")[2]]
+        arguments = ["sim", "--speed", str(self.of.times), "--rig", self.rig, "--seed", str(self.seed)]
+        arguments += ["--control", self.console.partition(":")[2]]
         arguments += ["--write-rig", str(self.folder / "rig.yaml"), *self._options]
         with (self.folder / "sim.err").open("a", encoding="utf-8") as errors:
             self._process = tester(arguments, errors)
@@ -112,7 +131,8 @@ class Machine:
         """Run the recipe on the same rig inside one process."""
         with (self.folder / "here.err").open("a", encoding="utf-8") as errors:
             recipe = str(self.folder / "recipe.yaml")
-            return tester(["run", recipe, "--rig", self.rig, "--seed", str(SEED), "--yes", "--out", str(out)], errors)
+            how = ["--rig", self.rig, "--seed", str(self.seed), "--yes", "--out", str(out)]
+            return tester(["run", recipe, *how], errors)
 
     def command(self, line: str) -> str:
         """Type a line at its console and return the answer."""
@@ -133,7 +153,8 @@ class Machine:
 
     def _program(self, arguments: Sequence[str]) -> subprocess.Popen[str]:
         with (self.folder / "run.err").open("a", encoding="utf-8") as errors:
-            return tester([*arguments, "--yes", "--hands", self.console], errors)
+            speed = [] if self.of.times == 1.0 else ["--speed", str(self.of.times)]
+            return tester([*arguments, *speed, "--yes", "--hands", self.console], errors)
 
 
 def tester(arguments: Sequence[str], errors: object) -> subprocess.Popen[str]:

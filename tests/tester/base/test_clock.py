@@ -14,6 +14,12 @@ def test_time_begins_at_zero_and_a_wait_ends_at_its_deadline() -> None:
     assert pace.now() >= 0.06
 
 
+def test_a_faster_clock_waits_as_much_less() -> None:
+    pace, slow = UrgentPace(times=1000.0), Pace()
+    pace.wait_until(60.0)
+    assert pace.now() >= 60.0 and 0.06 <= slow.now() < 30.0
+
+
 def test_something_urgent_ends_the_wait_under_way() -> None:
     pace = UrgentPace()
     Thread(target=pace.hurry).start()

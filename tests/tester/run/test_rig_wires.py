@@ -101,6 +101,12 @@ def test_arrivals_are_stamped_by_the_clock_that_the_ticks_come_from(machine: Mac
     ports.close()
 
 
+def test_the_clock_of_a_faster_machine_is_as_fast(machine: Machine) -> None:
+    ports = hardware_ports(machine.config, None, times=50.0)
+    assert ports.pace is not None and ports.pace.times == 50.0
+    ports.close()
+
+
 def test_a_machine_that_is_switched_off_is_a_lost_bus(machine: Machine) -> None:
     ports = hardware_ports(machine.config, None)
     assert ports.pace is not None
