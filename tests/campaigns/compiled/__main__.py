@@ -43,6 +43,9 @@ def cases(full: bool) -> list[Case]:
     found = [_case(f"{name}, seed {seed}", text, seed) for name, text in recipes.items() for seed in (0, 1)]
     found.append(_case("short, perfect sensors", SHORT, 0, QUIET))
     found.append(_case("quickstart", quickstart, 0))
+    wheel = '  - compound: "1#"\n'
+    two = AT_ONCE.replace(wheel, wheel + wheel.replace("1#", "3#"))
+    found.append(_case("two wheels, two processes", two, 0, jobs=2))
     own = OWN_KIND / "lab_sledge"
     own_recipe, own_rig = (own / "recipe.yaml").read_text(encoding="utf-8"), str(own / "rig.yaml")
     for faults in ((), ("step slide + 1 s: sledge jams",)):
@@ -55,10 +58,12 @@ def cases(full: bool) -> list[Case]:
 
 
 def _case(
-    name: str, recipe: str, seed: int, overrides: tuple[str, ...] = (), faults: tuple[str, ...] = (), rig: str = "sim"
-) -> Case:
+    name: str, recipe: str, seed: int, overrides: tuple[str, ...] = (), faults: tuple[str, ...] = (),
+    rig: str = "sim", jobs: int = 1,
+) -> Case:  # fmt: skip
     return {
         "name": name, "rig": rig, "recipe": recipe, "seed": seed, "overrides": list(overrides), "faults": list(faults),
+        "jobs": jobs,
     }  # fmt: skip
 
 

@@ -2,8 +2,8 @@
 
     python -P worker.py CASES.json
 
-A case is {"name", "rig", "recipe", "seed", "overrides", "faults"}. The first line says where `tester` is and whether
-its scan is compiled.
+A case is {"name", "rig", "recipe", "seed", "overrides", "faults", "jobs"}. The first line says where `tester` is and
+whether its scan is compiled.
 """
 
 from __future__ import annotations
@@ -34,6 +34,7 @@ class Case(TypedDict):
     seed: int
     overrides: list[str]
     faults: list[str]
+    jobs: int
 
 
 class Silent(ReportScreen):
@@ -67,6 +68,7 @@ def digests(case: Case) -> dict[str, str]:
             seed=case["seed"],
             overrides=tuple(case["overrides"]),
             faults=tuple(case["faults"]),
+            jobs=case["jobs"],
         )
         session = Session(options, screen)
         try:

@@ -124,7 +124,7 @@ def figures(sweeps: Sweeps) -> Iterator[Figure]:
     with ProcessPoolExecutor(sweeps.jobs) as pool:
         for life in pool.map(live, names, numbers):
             trips += len(life.trips)
-            words = f"ratio {life.known.ratio:.2f} of {life.known.count}, told from {100 * life.share:.0f} %"
+            words = f"ratio {life.known.ratio:.2f} of {life.known.heatings}, told from {100 * life.share:.0f} %"
             name = f"heat, {life.name}, seed {life.seed}"
             yield holds(name, not life.trips, "; ".join((words, *life.trips)), "no trip, with a history")
     yield equal(f"heat: trips in {len(cases)} lives of three runs", trips, 0)

@@ -180,7 +180,7 @@ class InterlockInputs(Inputs):
         widest, beyond = self.parameters[hub.HEAT_SHARE], self.parameters[hub.HEAT_SHARE_KNOWN]
         self.heat.share = known.share(widest, beyond)
         self.heat.ungiven_share = known.ungiven_share(widest, beyond)
-        if known.count:
+        if known.heatings:
             self.heat.ratio, self.heat.spread = known.ratio, beyond
         self.heat_known = known.words(widest, beyond)
 

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from math import inf, nan
 from statistics import median
-from typing import Final
+from typing import Final, NamedTuple
 
 SMOOTHED_S: Final = 10.0
 """Smoothing time of powers, s [A]: 0.05 K of noise on a hub of 420 J/K then makes 2 W."""
@@ -153,11 +153,11 @@ LEAST_SHARE: Final = 0.06
 shows them."""
 
 
-@dataclass(frozen=True, slots=True)
-class KnownRatio:
+class KnownRatio(NamedTuple):
     """The history of a rig's heatings: their number, their ratio, and the spread of the newest."""
 
-    count: int = 0
+    # Processes of a run in parts get it: a frozen dataclass that is compiled cannot be read from a pickle.
+    heatings: int = 0
     ratio: float = nan
     apart: float = 0.0
     """Greatest less least ratio of the newest heatings."""
@@ -168,13 +168,13 @@ class KnownRatio:
         Without a history it is ``widest`` (``heat_share``), which is also its maximum. With a history it is ``known``
         (``heat_share_known``) beyond the ratio, but at least LEAST_SHARE.
         """
-        if self.count == 0:
+        if self.heatings == 0:
             return widest
         return min(widest, max(self.ratio * (1.0 + known) - 1.0, LEAST_SHARE))
 
     def ungiven_share(self, widest: float, known: float) -> float:
         """Return the share by which the heat put in may fall short of the heat shown: ``known`` below the ratio."""
-        if self.count == 0:
+        if self.heatings == 0:
             return widest
         return min(widest, max(1.0 - self.ratio * (1.0 - known), LEAST_SHARE))
 
@@ -182,9 +182,9 @@ class KnownRatio:
         """Return the history and its share, in words."""
         share = self.share(widest, known)
         row = f"a row tells from {100.0 * share:.0f} %"
-        if self.count == 0:
+        if self.heatings == 0:
             return f"no history yet; {row}"
-        text = f"known from {self.count} heatings, ratio {self.ratio:.2f}, {self.apart:.2f} apart; {row}"
+        text = f"known from {self.heatings} heatings, ratio {self.ratio:.2f}, {self.apart:.2f} apart; {row}"
         return text if share < widest else f"{text}: measure observer.thermal, or check the sensors"
 
 

@@ -223,7 +223,7 @@ def test_a_ratio_below_one_leaves_the_least_share(ratio: float) -> None:
 
 def test_a_ratio_beyond_what_beliefs_explain_is_no_evidence() -> None:
     assert share(1.5, 0.5, 1.0, 1.0) == WIDEST
-    assert known_ratio((1.5, 1.0, 1.0, 0.5, 1.0), WIDEST, KNOWN).count == 3
+    assert known_ratio((1.5, 1.0, 1.0, 0.5, 1.0), WIDEST, KNOWN).heatings == 3
 
 
 def test_heatings_that_do_not_agree_make_no_history() -> None:

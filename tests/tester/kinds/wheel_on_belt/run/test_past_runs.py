@@ -45,7 +45,7 @@ def test_heatings_of_runs_make_a_ratio_known(tmp_path: Path, rig: RigConfig) -> 
     store(tmp_path, "1", [data(rig, 1.0), data(rig, 1.04)])
     store(tmp_path, "2", [data(rig, 1.02)])
     known = known_heat(tmp_path, rig)
-    assert (known.count, known.ratio) == (3, pytest.approx(1.02))
+    assert (known.heatings, known.ratio) == (3, pytest.approx(1.02))
 
 
 def test_where_there_is_no_folder_there_is_no_history(tmp_path: Path, rig: RigConfig) -> None:
@@ -60,7 +60,7 @@ def test_a_run_that_tripped_in_heat_is_no_evidence(tmp_path: Path, rig: RigConfi
 
 def test_a_run_that_tripped_otherwise_is_evidence(tmp_path: Path, rig: RigConfig) -> None:
     store(tmp_path, "1", [data(rig, 1.0)] * 3, trip="overload")
-    assert known_heat(tmp_path, rig).count == 3
+    assert known_heat(tmp_path, rig).heatings == 3
 
 
 @pytest.mark.parametrize(
@@ -88,7 +88,7 @@ def test_a_record_that_cannot_be_read_is_no_evidence(tmp_path: Path, rig: RigCon
     store(tmp_path, "1", [data(rig, 1.0)] * 3)
     (tmp_path / "2").mkdir()
     (tmp_path / "2" / "run.db").write_text("no database", encoding="utf-8")
-    assert known_heat(tmp_path, rig).count == 3
+    assert known_heat(tmp_path, rig).heatings == 3
 
 
 @pytest.mark.parametrize(
