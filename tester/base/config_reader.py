@@ -6,6 +6,9 @@ range is a problem with a position in the file, as in a recipe.
 
 A quantity is ``Annotated[float, "m/s"]``, optionally with a ``Range``. Its key in the file is the field's name without
 its unit's suffix: ``wheel_speed_m_s`` is ``wheel_speed``. A bare number counts in the field's unit.
+
+A mapping of sections whose default has entries is merged with them by name: an entry of the default keeps each key that
+the file does not state, and an entry with a new name must state all of its keys.
 """
 
 from __future__ import annotations
@@ -14,7 +17,7 @@ import json
 import types
 from collections.abc import Mapping
 from dataclasses import MISSING, Field, dataclass, fields, is_dataclass
-from functools import cache
+from functools import cache, partial
 from typing import (
     TYPE_CHECKING,
     Annotated,
@@ -101,7 +104,7 @@ def key_of(kind: type[DataclassInstance], name: str) -> str:
 def read(kind: type[Config], tree: Tree, missing: str = "") -> Config:
     """Return a file's tree as an instance of ``kind``; raises InvalidSource with every problem.
 
-    ``missing`` is added to the message for every missing key.
+    ``missing`` is added to the message for every missing key, except those of an entry with a new name.
     """
     from pydantic import TypeAdapter, ValidationError  # only commands that read a file pay for it
 
@@ -208,23 +211,54 @@ def _base(*, further: bool) -> type[BaseModel]:
 
 
 @cache
-def _model(kind: type[DataclassInstance]) -> type[BaseModel]:
-    """Return the pydantic model that checks a mapping for ``kind``."""
+def _model(kind: type[DataclassInstance], known: tuple[str, ...] = ()) -> type[BaseModel]:
+    """Return the pydantic model that checks a mapping for ``kind``.
+
+    ``known``: the default's names, of an entry that must have every key if its name is another.
+    """
     from pydantic import create_model
 
     hints = _hints(kind)
     base = _base(further=any(_takes_rest(hint) for hint in hints.values()))
     definitions: dict[str, Any] = {
-        field.name: (_type(hints[field.name]), _field(field, _key(field.name, hints[field.name])))
+        field.name: (_field_type(field, hints[field.name]), _field(field, hints[field.name], known))
         for field in fields(kind)
         if field.init and not _takes_rest(hints[field.name])
     }
     return create_model(kind.__name__, __base__=base, **definitions)
 
 
-def _field(field: Field[Any], key: str) -> object:
+def _field_type(field: Field[Any], hint: Any) -> Any:
+    """Return the pydantic type of a field; of a mapping of sections whose default has entries, one that merges them."""
+    default: object = field.default_factory() if field.default_factory is not MISSING else field.default
+    if not (isinstance(default, Mapping) and default):
+        return _type(hint)
+    from pydantic import BeforeValidator
+
+    of = get_args(_without_marks(hint))[1]
+    named = {name: as_tree(entry) for name, entry in cast("Mapping[str, DataclassInstance]", default).items()}
+    return Annotated[dict[str, _built(of, tuple(named))], BeforeValidator(partial(_merged, named))]
+
+
+def _merged(named: Mapping[str, dict[str, object]], given: object) -> object:
+    """Return the entries of a file over those of the default: key by key where both have a name."""
+    if not isinstance(given, dict):
+        return given  # refused by the type
+    stated = cast("dict[str, object]", given)
+    both = {
+        name: {**named[name], **cast("dict[str, object]", entry)}
+        for name, entry in stated.items()
+        if name in named and isinstance(entry, dict)
+    }
+    return {**named, **stated, **both}
+
+
+def _field(field: Field[Any], hint: Any, known: tuple[str, ...]) -> object:
     from pydantic import Field as ModelField
 
+    key = _key(field.name, hint)
+    if known:
+        return ModelField(alias=key, description=f"every key of a new name; known names: {', '.join(known)}")
     if field.default_factory is not MISSING:
         return ModelField(default_factory=field.default_factory, alias=key)
     if field.default is not MISSING:
@@ -232,8 +266,8 @@ def _field(field: Field[Any], key: str) -> object:
     return ModelField(alias=key)
 
 
-def _built(kind: type[DataclassInstance]) -> Any:
-    """Return the type that validates a mapping and yields an instance of ``kind``.
+def _built(kind: type[DataclassInstance], known: tuple[str, ...] = ()) -> Any:
+    """Return the type that validates a mapping and yields an instance of ``kind``; ``known`` as for ``_model``.
 
     A ValueError of the dataclass itself becomes a problem at the mapping's place.
     """
@@ -249,7 +283,7 @@ def _built(kind: type[DataclassInstance]) -> Any:
             values[rest] = dict(model.model_extra or {})
         return kind(**values)
 
-    return Annotated[_model(kind), AfterValidator(build)]
+    return Annotated[_model(kind, known), AfterValidator(build)]
 
 
 def _type(hint: Any) -> Any:

@@ -102,7 +102,7 @@ def problems_of(
     """Return a pydantic error as problems, sorted by position.
 
     With ``model`` (the validated class) unknown and missing keys name the valid ones. ``missing`` is added to the
-    message for a missing key.
+    message for a missing key whose field has no description.
     """
     details = islice(error.errors(include_url=False), MAX_PROBLEMS + 1)
     errors_found = list(details)
@@ -136,7 +136,9 @@ def _problem(detail: ErrorDetails, tree: Tree, model: type[BaseModel] | None, mi
     if kind == "extra_forbidden":
         return Problem(tree.name, *tree.key_position(at), _unknown(key, model, at, tree))
     if kind == "missing":
-        words = _missing(key, _fields(model, at).get(key)) + (f"; {missing}" if missing else "")
+        info = _fields(model, at).get(key)
+        described = info is not None and bool(info.description)
+        words = _missing(key, info) + (f"; {missing}" if missing and not described else "")
         return Problem(tree.name, *tree.key_position(at), words)
     message = _message(detail, value)
     names = [piece for piece in at if isinstance(piece, str)]

@@ -157,9 +157,9 @@ def drawn(seed: int, compound: str, own: TrackRubber, tracks: dict[str, TrackSur
 def run_of(seed: int, compound: str, own: TrackRubber, tracks: dict[str, TrackSurface]) -> dict[str, list[MasterPoint]]:
     """Return the rows of a whole run by track; none if it did not end as planned."""
     text = with_rubber(Path(recipes.find("grosch")).read_text(encoding="utf-8"), compound)
-    groups = [(f"sim.surfaces.{name}", one) for name, one in tracks.items()]
-    whole = [*(one for path, group in groups for one in _keys(path, group)), *_keys(f"sim.rubbers.{compound}", own)]
-    bench = TrackBench("grosch", text, (*PLAIN, *whole), seed).leaping().to_the_end()
+    keys = [*_keys(f"sim.rubbers.{compound}", own, RUBBERS[compound])]
+    keys += [key for name, one in tracks.items() for key in _keys(f"sim.surfaces.{name}", one, SURFACES[name])]
+    bench = TrackBench("grosch", text, (*PLAIN, *keys), seed).leaping().to_the_end()
     found: dict[str, list[MasterPoint]] = {track: [] for track in TRACKS}
     if bench.run.outcome is Outcome.DONE and not bench.kept.trips:
         steps = {step.condition: held_by(step.setpoint) for step in bench.plan.conditions()}
@@ -169,12 +169,13 @@ def run_of(seed: int, compound: str, own: TrackRubber, tracks: dict[str, TrackSu
     return found
 
 
-def _keys(path: str, group: TrackRubber | TrackSurface) -> Iterator[str]:
-    """Yield every key of a rubber or a surface: those that are not set are not its own but an abrasive's or SBR's."""
+def _keys(path: str, group: TrackRubber | TrackSurface, packaged: TrackRubber | TrackSurface) -> Iterator[str]:
+    """Yield the keys in which a rubber or a surface differs from the packaged one."""
     units = get_type_hints(type(group), include_extras=True)
     for item in fields(group):
-        unit = units[item.name].__metadata__[0]
-        yield f"{path}.{item.name}={getattr(group, item.name):.9g}{'' if unit == '1' else f' {unit}'}"
+        unit, value = units[item.name].__metadata__[0], getattr(group, item.name)
+        if value != getattr(packaged, item.name):
+            yield f"{path}.{item.name}={value:.9g}{'' if unit == '1' else f' {unit}'}"
 
 
 def trial(which: tuple[int, bool]) -> Trial:

@@ -36,6 +36,25 @@ class Outer:
     text: str = ""
 
 
+@dataclass(frozen=True, slots=True)
+class Pair:
+    load_n: Annotated[float, "N"] = 1.0
+    share: Annotated[float, "1"] = 0.5
+
+    def __post_init__(self) -> None:
+        if self.load_n < self.share:
+            raise ValueError("the load is below the share")
+
+
+@dataclass(frozen=True, slots=True)
+class Packaged:
+    pairs: Mapping[str, Pair] = field(default_factory=lambda: {"soft": Pair(2.0, 0.1), "hard": Pair(7.0)})
+
+
+def packaged(text: str) -> Packaged:
+    return read(Packaged, load_tree(text, "rig.yaml"))
+
+
 def outer(text: str) -> Outer:
     return read(Outer, load_tree(text, "rig.yaml"))
 
@@ -136,3 +155,36 @@ def test_a_text_survives_writing_and_reading(text: str) -> None:
 def test_a_number_survives_writing_and_reading_exactly(value: float) -> None:
     config = Outer(value, counts=value, limits=(-value, value), named={"a": Inner(min(value, 450.0))})
     assert outer(as_text(config)) == config
+
+
+def test_a_packaged_entry_keeps_the_keys_that_the_file_does_not_state() -> None:
+    assert packaged("pairs: {soft: {load: 3 N}}").pairs == {"soft": Pair(3.0, 0.1), "hard": Pair(7.0)}
+
+
+def test_an_empty_section_leaves_the_packaged_entries() -> None:
+    assert packaged("pairs: {}") == packaged("pairs: {soft: {}}") == Packaged()
+
+
+def test_an_entry_with_a_new_name_is_beside_the_packaged_ones() -> None:
+    assert packaged("pairs: {own: {load: 3 N, share: 0.2}}").pairs == {**Packaged().pairs, "own": Pair(3.0, 0.2)}
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("  sofd: {load: 3 N}", "3: share is missing (expected every key of a new name; known names: soft, hard)"),
+        ("  own: {load: 3 N, shar: 1}", '20: unknown key "shar", did you mean share? (expected one of load, share)'),
+        ("  soft: {load: 0}", "9: soft: the load is below the share"),
+        ("  soft: 3", '9: soft: "3" is not accepted (expected keys with values)'),
+        ("  3", '3: pairs: "3" is not accepted (expected keys with values)'),
+    ],
+)
+def test_an_entry_that_does_not_fit_is_one_problem_at_its_place(text: str, said: str) -> None:
+    with pytest.raises(InvalidSource) as caught:
+        read(Packaged, load_tree(f"pairs:\n{text}", "rig.yaml"), "the builder knows it")
+    assert [str(problem) for problem in caught.value.problems] == [f"rig.yaml:2:{said}"]
+
+
+def test_a_merged_entry_survives_writing_and_reading() -> None:
+    config = packaged("pairs: {soft: {load: 0.3333333333333333 N}, own: {load: 3, share: 0}}")
+    assert packaged(as_text(config)) == config

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import pytest
 
+from sim.physics.track_bells import RUBBERS, SURFACES
 from tester.base.source import InvalidSource
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.rig import TrackConfig
@@ -78,3 +81,22 @@ def test_without_a_height_sensor_the_protrusion_shows_nothing() -> None:
 def test_an_arm_without_a_drive_and_a_rig_without_a_chamber() -> None:
     rig = TrackConfig.of(load_rig("pin-on-disc"))
     assert list(rig.drives()) == ["track"] and not rig.chamber and not rig.linear
+
+
+def test_a_key_of_a_surface_leaves_its_other_keys_and_the_other_surfaces() -> None:
+    rig = TrackConfig.of(load_rig("grosch", ("sim.surfaces.glass.adhesion=0.9",)))
+    assert rig.sim.surfaces == {**SURFACES, "glass": replace(SURFACES["glass"], adhesion=0.9)}
+    assert rig.sim.surfaces["glass"].hysteresis == 0.0 and rig.sim.rubbers == RUBBERS
+
+
+def test_a_key_of_a_rubber_leaves_its_other_keys_and_the_other_rubbers() -> None:
+    rig = TrackConfig.of(load_rig("grosch", ("sim.rubbers.butyl.t_ref=-20 degC",)))
+    assert rig.sim.rubbers == {**RUBBERS, "butyl": replace(RUBBERS["butyl"], t_ref=-20.0)}
+
+
+def test_a_new_surface_needs_every_key() -> None:
+    with pytest.raises(InvalidSource) as caught:
+        load_rig("grosch", ("sim.surfaces.slate.adhesion=0.9",))
+    assert [problem.message.partition(" is missing")[0] for problem in caught.value.problems] == [
+        "grit", "hysteresis", "jump",
+    ]  # fmt: skip
