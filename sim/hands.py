@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from math import isfinite
 from typing import Any, Final
 
+from sim.noise import normal
+
 DONE: Final = "done: "
 REFUSED: Final = "not done: "
 """Beginnings of a console's answer to a verb."""
@@ -110,6 +112,15 @@ class Verb:
         if left:
             raise ValueError(f"{' '.join(left)!r} is too much; the form is {self.form!r}")
         getattr(rig, self.method)(**values)
+
+
+DUROMETER_SHORE_A: Final = 1.5
+"""Standard deviation of a hardness that a person reads by a pocket durometer, Shore A [A]."""
+
+
+def durometer(seed: int, piece: int, shore_a: float) -> float:
+    """Return a person's reading of a mounted piece whose true hardness is ``shore_a``: 0 to 100 Shore A."""
+    return min(max(shore_a + DUROMETER_SHORE_A * normal(seed, "durometer", piece), 0.0), 100.0)
 
 
 def by_word(verbs: Sequence[Verb]) -> Mapping[str, Verb]:

@@ -17,7 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import cache, lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 if TYPE_CHECKING:
     from pydantic import GetCoreSchemaHandler, GetJsonSchemaHandler
@@ -38,6 +38,9 @@ class _Kind:
     units: Mapping[str, Fraction]
 
 
+SHORE_A: Final = "Shore A"
+SCALES: Final[Mapping[str, tuple[float, float]]] = {SHORE_A: (0.0, 100.0)}
+"""Least and greatest value of a unit that is a scale with ends."""
 _ONE = Fraction(1)
 _K = Fraction(1000)
 _MILLI = Fraction(1, 1000)
@@ -70,6 +73,7 @@ _KINDS: tuple[_Kind, ...] = (
     _Kind("a specific heat", "1850 J/(kg K)", {"J/(kg K)": _ONE, "kJ/(kg K)": _K}),
     _Kind("a heat conductivity", "0.25 W/(m K)", {"W/(m K)": _ONE}),
     _Kind("a heat transfer coefficient", "14 W/(m2 K)", {"W/(m2 K)": _ONE}),
+    _Kind("a hardness", "64 Shore A", {"Shore A": _ONE}),
     _Kind("a stiffness", "125 N/mm", {"N/mm": _ONE, "N/m": _MILLI}),
     _Kind("a damping", "400 N s/m", {"N s/m": _ONE}),
     _Kind("a wear rate", "0.08 mm3/(N m)", {"mm3/(N m)": _ONE}),
@@ -139,7 +143,7 @@ _SPELLINGS: dict[str, str] = {
     "J/kg/K": "J/(kg K)", "J/kgK": "J/(kg K)", "J/(kgK)": "J/(kg K)", "J/kg K": "J/(kg K)",
     "W/m/K": "W/(m K)", "W/mK": "W/(m K)", "W/(mK)": "W/(m K)", "W/m K": "W/(m K)",
     "W/m2/K": "W/(m2 K)", "W/m2K": "W/(m2 K)", "W/(m2K)": "W/(m2 K)", "W/m2 K": "W/(m2 K)",
-    "mm3/Nm": "mm3/(N m)", "mm3/(Nm)": "mm3/(N m)", "mm3/N m": "mm3/(N m)", "mm3/N/m": "mm3/(N m)",
+    "ShA": "Shore A", "mm3/Nm": "mm3/(N m)", "mm3/(Nm)": "mm3/(N m)", "mm3/N m": "mm3/(N m)", "mm3/N/m": "mm3/(N m)",
 }  # fmt: skip
 """Other spellings of the table's units."""
 

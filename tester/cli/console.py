@@ -228,12 +228,14 @@ class Console(ReportScreen):
         self._question = waiting
         self._keys.pressed()
         self._typed = ""
-        self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text})
+        unit = {"unit": waiting.question.unit} if waiting.question.unit else {}
+        self.emit({"event": "prompt", "number": waiting.number, "text": waiting.text, **unit})
         self.put(waiting.question)
 
     def put(self, question: Question) -> None:
         """Show a question."""
-        self.message(f"{question.text} - {ASKED}")
+        how = f'type {question.hint}, or "{DONE}", and Enter' if question.unit else ASKED
+        self.message(f"{question.text} - {how}")
 
     def answer(self, prompt: Prompt, typed: str) -> None:
         """Take a typed line as the answer, if it is one."""

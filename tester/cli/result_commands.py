@@ -179,6 +179,7 @@ def _conditions(results: RunResults) -> Iterator[Json]:
 
 def _lines(name: str, results: RunResults) -> Iterator[str]:
     from tester.cli.ending import risk_lines, tally_lines
+    from tester.results.hardness_read import hardness_lines
 
     run = results.run
     yield f"{name}: {shown(run.info.recipe_name)}"
@@ -198,7 +199,7 @@ def _lines(name: str, results: RunResults) -> Iterator[str]:
     left = sum(not row.tried for row in results.rows)
     if left:
         yield f"{left} of {len(results.rows)} conditions not measured"
-    for line in (*results.watch_lines(), *results.angle_lines(), *results.wear_lines()):
+    for line in (*results.watch_lines(), *results.angle_lines(), *results.wear_lines(), *hardness_lines(results)):
         yield shown(line)
 
 

@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeAlias, TypeVar
 
 from tester.base.deriving import mypyc_attr
 from tester.inputs.rig import Rig
+from tester.machine.hardness import HardnessBelief, keep_hardness
 from tester.machine.image import BaseDemand, BaseReadings
-from tester.machine.prompts import Prompts
+from tester.machine.prompts import Prompt, Prompts
 from tester.store.recorder import Recorder
 from tester.store.records import PieceInfo
 
@@ -89,6 +90,8 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         """Mask of the closed gates; 0 if this scan counts."""
         self.progress = Progress()
         self.mounted = MountedSpecimen()
+        self.hardness = HardnessBelief()
+        """Of the compounds whose hardness the run asks for at mounting."""
         self.counted_on: list[str] = []
         """Lines about hardware that the run counts on, for its record; a real rig's run prints them."""
 
@@ -118,12 +121,17 @@ class BaseContext(Generic[RigT_co, ReadingsT_co, DemandT_co]):
         """Return whether contact is demanded or measured; every scan is then recorded."""
         return False
 
-    def mount(self, step: Mount) -> None:
-        """Note the new specimen that a person has just put on, and record it."""
+    def mount(self, step: Mount, prompt: Prompt | None = None) -> None:
+        """Note the new specimen that a person has just put on, and record it.
+
+        ``prompt``: the answered question, where it asked for the hardness.
+        """
         self.mounted = MountedSpecimen(step.piece, step.specimen, step.compound)
         self.journal.piece_mounted(
             PieceInfo(step.piece, step.specimen, step.replicate, step.compound, self.now, nan, nan, updated_s=self.now)
         )
+        if step.hardness and prompt is not None:
+            keep_hardness(self, prompt, step.piece, step.compound)
 
     def piece(self) -> tuple[int, float, float]:
         """Return the specimen's number (0 if none), diameter in mm (NaN if it has none) and sliding distance in m."""

@@ -12,6 +12,7 @@ from typing import Any, Final
 
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.context import AnyContext
+from tester.machine.prompts import DONE, Prompt
 from tester.machine.safety_inputs import InputStates
 
 GUARD_OPEN: Final = "answered with the guard or a door open: close it, then the question is put again"
@@ -85,6 +86,8 @@ class Ask:
         self.text = text
         self.near = near
         self.unit = unit
+        self.by_itself = DONE
+        """The answer without a person, from the activity that knows a better one."""
         self.number = 0
         self.record = 0
         self.recorded = False
@@ -93,7 +96,7 @@ class Ask:
         """Return True once the question is answered; journal question and answer."""
         if not self.number:
             self._put(ctx, self.text)
-        asked = ctx.prompts.asked[self.number - 1]
+        asked = self.prompt(ctx)
         answer = asked.answer
         alone = ctx.prompts.answers_itself(near=self.near)
         ctx.demand.attended = not alone
@@ -114,8 +117,13 @@ class Ask:
             self._put(ctx, f"{self.text}: {AGAIN}")
         return False
 
+    def prompt(self, ctx: AnyContext) -> Prompt:
+        """Return the question as it was last put."""
+        return ctx.prompts.asked[self.number - 1]
+
     def _put(self, ctx: AnyContext, text: str) -> None:
-        self.number = ctx.prompts.ask(ctx.now, text, near=self.near, unit=self.unit).number
+        asked = ctx.prompts.ask(ctx.now, text, near=self.near, unit=self.unit, by_itself=self.by_itself)
+        self.number = asked.number
         self.record = ctx.journal.prompt(ctx.now, text)
         self.recorded = False
 

@@ -10,10 +10,12 @@ from enum import Enum
 from math import inf, isfinite
 from typing import Final
 
-from tester.base.units import UnitError, parse, units_like
+from tester.base.units import SCALES, UnitError, parse, units_like
 
 DONE, NOT_YET = "yes", "no"
 """The exact words that answer a run's question; after the second the question keeps waiting."""
+AUTOMATIC: Final = " (automatic)"
+"""Ends the answer that a question gave itself."""
 GO: Final = "go"
 """The word that starts a motion."""
 BACK: Final = "back"
@@ -64,15 +66,19 @@ class Question:
         return "" if text else "expected a text"
 
     def value(self, answer: str) -> float:
-        """Return the quantity in ``unit``; a bare number counts as in that unit. Raises UnitError."""
+        """Return the quantity in ``unit``; a bare number counts as in that unit. Raises UnitError, also beyond a scale.
+        """
         text = answer.strip()
         try:
-            bare = float(text)
+            found = float(text)
         except ValueError:
-            return parse(text, self.unit)
-        if not isfinite(bare):
+            found = parse(text, self.unit)
+        if not isfinite(found):
             raise UnitError(f"{text} is not a number (expected one in {self.unit})")
-        return bare
+        least, most = SCALES.get(self.unit, (-inf, inf))
+        if not least <= found <= most:
+            raise UnitError(f"{text} is beyond the scale (expected {least:g} to {most:g} {self.unit})")
+        return found
 
     @property
     def hint(self) -> str:
@@ -106,6 +112,19 @@ class Prompt:
         """The question, for the person."""
         return self.question.text
 
+    @property
+    def by_itself(self) -> bool:
+        """Whether no person has answered."""
+        return (self.answer or "").endswith(AUTOMATIC)
+
+    @property
+    def quantity(self) -> float | None:
+        """The quantity in the answer, in the question's unit; None for any other answer, or none."""
+        answer = (self.answer or "").removesuffix(AUTOMATIC)
+        if self.question.asks is not Asks.QUANTITY or not answer or answer in self.question.choices:
+            return None
+        return self.question.value(answer)
+
     def reply(self, text: str) -> str:
         """Accept an answer; return why it is refused, "" if it is valid."""
         refusal = self.question.refusal(text)
@@ -124,6 +143,8 @@ class Prompts:
     automatic: bool = False
     real: bool = False
     asked: list[Prompt] = field(default_factory=list[Prompt])
+    person: str = ""
+    """Name of the person at the terminal, who gives every answer that comes from no other screen; "" if unknown."""
     now_s: float = inf
     """Rig time of a commissioning, s; infinity while no rig runs."""
 
@@ -131,14 +152,17 @@ class Prompts:
         """Return whether a prompt is answered automatically. ``near``: it asks a person to come near the machine."""
         return self.automatic and not (near and self.real)
 
-    def ask(self, now: float, text: str, *, near: bool = True, unit: str = "") -> Prompt:
+    def ask(self, now: float, text: str, *, near: bool = True, unit: str = "", by_itself: str = DONE) -> Prompt:
         """Ask a run's question and return its prompt, which may already be answered.
 
-        ``unit``: the answer is DONE, or a quantity in this unit.
+        ``unit``: the answer is DONE, or a quantity in this unit; ``by_itself``: the answer without a person.
         """
         asks = Asks.QUANTITY if unit else Asks.CHOICE
         prompt = self._put(now, Question(f"prompt {len(self.asked) + 1}", text, asks, (DONE,), unit))
-        prompt.answer = "yes (automatic)" if self.answers_itself(near=near) else None
+        if self.answers_itself(near=near):
+            prompt.answer = f"{by_itself}{AUTOMATIC}"
+        else:
+            prompt.by = self.person
         return prompt
 
     def put(self, question: Question) -> Prompt:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import TypeVar
 
 from tester.base.source import InvalidSource
@@ -23,6 +23,7 @@ from tester.report.layout import (
     heads,
 )
 from tester.report.record_section import RunRecord
+from tester.results.hardness_read import hardness_lines
 from tester.store.records import StoredMaterial
 
 Model = TypeVar("Model")
@@ -38,7 +39,7 @@ def materials_sections(record: RunRecord, key: str) -> Iterator[ReportSection]:
     if any(model.formulation for model in compounds.values()):
         parts.append(_formulations(compounds))
     for material in files:
-        parts += _described(material, compounds.get(material.name))
+        parts += _described(material, compounds.get(material.name), hardness_lines(record.results, material.name))
     bare = [name for name in dict.fromkeys(row.info.compound for row in record.results.rows) if name not in compounds]
     if bare:
         parts.append(Paragraph(f"Named alone, without a file: {', '.join(bare)}.", "small"))
@@ -67,10 +68,12 @@ def _formulations(compounds: Mapping[str, CompoundModel]) -> ReportTable:
     return ReportTable("Formulations (phr)", titles, rows, "phr: parts by weight per hundred of rubber")
 
 
-def _described(stored_material: StoredMaterial, compound: CompoundModel | None) -> list[Part]:
+def _described(
+    stored_material: StoredMaterial, compound: CompoundModel | None, read: Iterable[str]
+) -> list[Part]:
     facts = [("source", file_name(stored_material.source)), ("SHA-256", stored_material.sha256)]
     if compound is not None:
-        facts = [*_of_compound(compound), *facts]
+        facts = [*_of_compound(compound), *(("hardness read", line) for line in read), *facts]
     surface = _model(stored_material, "surface", surface_model)
     if surface is not None:
         facts = [("note", surface.note or NONE), ("figures from", surface.source or NONE), *facts]

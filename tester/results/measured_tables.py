@@ -7,12 +7,14 @@ checks.
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
+from math import isfinite
 from typing import Final
 
 from tester.analysis.directions import is_reversed
 from tester.analysis.flags import flags_in
 from tester.analysis.results import RepeatResult
 from tester.analysis.wear_rate import WearCheck, WearRate
+from tester.base.units import SHORE_A
 from tester.base.words import duration
 from tester.results.columns import Column, Output, Table, mean_column, piece_key, setting_columns
 from tester.results.run_results import RunResults
@@ -112,10 +114,13 @@ class PieceRow:
 
 
 def pieces_table(results: RunResults) -> Table[PieceRow]:
-    """Return a row for each mounted piece: its identity, diameters and wear rate (95 % interval)."""
+    """Return a row for each mounted piece: its identity, diameters and wear rate (95 % interval), and its hardness if
+    the run asked for one.
+    """
     number = Column[PieceRow](piece_key(results.worn), results.worn, lambda row: row.piece.piece, "", 0, _REPORT)
     rows = (PieceRow(piece, results.wear_of(piece.piece)) for piece in results.pieces)
-    return Table((number, *_PIECE), tuple(rows))
+    read = any(isfinite(piece.hardness_shore_a) for piece in results.pieces)
+    return Table((number, *_PIECE, *(_HARDNESS if read else ())), tuple(rows))
 
 
 def checks_table(results: RunResults) -> Table[WearCheck]:
@@ -146,3 +151,9 @@ _PIECE: tuple[Column[PieceRow], ...] = (
     Column("wear_u_standard", "u wear", lambda row: row.wear.standard, "mm3/(N m)", digits=2),
     Column("wear_u_expanded", "U wear", lambda row: row.wear.expanded, "mm3/(N m)", digits=2),
 )  # fmt: skip
+
+_HARDNESS: tuple[Column[PieceRow], ...] = (
+    Column("hardness_shore_a", "hardness", lambda row: row.piece.hardness_shore_a, SHORE_A, 1, _REPORT),
+    Column("hardness_by", "read by", lambda row: row.piece.hardness_by, views=_REPORT),
+    Column("hardness_utc", "read at", lambda row: row.piece.hardness_utc),
+)

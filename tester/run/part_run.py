@@ -4,14 +4,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from drivers.ports import BusLost
+from sim.hands import durometer
 from tester.base import clock
 from tester.base.clock import Pace
 from tester.base.trouble import in_words
 from tester.inputs.rig.further_sensors import quantities_on
+from tester.machine.hardness import HardnessBelief
 from tester.machine.leaps import Leaps
 from tester.machine.prompts import Prompts
 from tester.machine.rig_ports import Ports
@@ -164,6 +167,16 @@ def _broken_off(kind: type[BaseException], error: BaseException | None) -> str:
     return f"the program broke off: {kind.__name__}: {in_words(error) if error is not None else ''}"
 
 
+def _hardness(part: Part, job: Job) -> HardnessBelief:
+    """Return what is believed of the hardness of the specimens that the plan asks for."""
+    compounds = [specimen.compound for specimen in part.plan.specimens if specimen.hardness]
+    if not compounds:
+        return HardnessBelief()
+    from tester.inputs.recipe.measured_specimens import believed_hardness  # pydantic is slow to load
+
+    return HardnessBelief(believed_hardness(compounds, job.folder / "recipe.yaml"), partial(durometer, job.seed))
+
+
 def _execute(
     job: Job, work: Work, part: Part, writer: RunWriter, watch: PartWatch, prompts: Prompts
 ) -> tuple[Outcome, str, float]:
@@ -185,6 +198,7 @@ def _execute(
             attendant = hands = remote_hands(job.hands, rig, writer)
         setup = RunSetup(rig, part.plan, ports, attendant, writer, prompts, work.point, job.history)
         run = run_parts(rig).build(setup)
+        run.engine.ctx.hardness = _hardness(part, job)
         run.engine.executor.hands = hands
         run.engine.executor.procedures.number_after(part.last_mounted)  # the plan may be part of a larger plan
         watch.track.begin_part(part.plan)

@@ -73,7 +73,7 @@ class Session(PartWatch):
         """The part that is running, or ran last, in this process."""
         self.folder: Path | None = None
         self.ending: RunEnding | None = None
-        self.prompts = Prompts(automatic=screen.answer_yes)
+        self.prompts = Prompts(automatic=screen.answer_yes, person=options.operator or user())
         """Prompts of all parts in this process; their numbers continue from part to part."""
         self._level = StopLevel.NONE
         self._pool: WorkerPool | None = None

@@ -199,6 +199,11 @@ class Recorder:
         columns = self._from_origin("piece", columns_in(piece))
         self._write(insert("piece", columns, "INSERT OR REPLACE"), urgent=True)
 
+    def hardness(self, piece: int, shore_a: float, by: str) -> None:
+        """Store the hardness of a mounted piece, Shore A, and the person who typed it."""
+        read = {"hardness_shore_a": shore_a, "hardness_by": by, "hardness_utc": self._utc()}
+        self._write(self._change("piece", read, piece=piece), urgent=True)
+
     def piece_state(self, piece: int, diameter_mm: float, sliding_m: float, t_s: float) -> None:
         """Store a piece's present diameter and the distance it has slid since it was new, for a resumed run."""
         state = {"diameter_mm": diameter_mm, "sliding_m": sliding_m, "updated_s": t_s}

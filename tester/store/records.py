@@ -186,6 +186,11 @@ class PieceInfo:
     updated_s: float = 0.0
     ground_s: float = NAN
     """Time at which grinding in was complete; NaN before that."""
+    hardness_shore_a: float = NAN
+    """As a person read it at mounting; NaN if not."""
+    hardness_by: str = ""
+    hardness_utc: str = ""
+    """Who typed it, "automatic" without a person, "" if not known; and when."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -8,7 +8,7 @@ import shlex
 import pytest
 
 from sim import hands, machines
-from sim.hands import COUNT, FLAG, TEXT, VALUES, Argument, Verb
+from sim.hands import COUNT, FLAG, TEXT, VALUES, Argument, Verb, durometer
 from sim.machines.specimen_on_track.rig import TrackRig
 from sim.machines.wheel_on_belt.rig import WheelRig
 from sim.plain_twin import PlainTwin
@@ -93,3 +93,8 @@ def _fits(rig: type[SimRig], verbs: tuple[Verb, ...]) -> None:
         assert verb.word not in OF_THE_CONSOLE and verb.about
         taken = [name for name in inspect.signature(getattr(rig, verb.method)).parameters if name != "self"]
         assert [argument.name for argument in verb.arguments] == taken, verb.word
+
+
+def test_a_hardness_that_is_read_is_its_piece_s_and_on_the_scale() -> None:
+    assert durometer(1, 2, 64.0) == durometer(1, 2, 64.0) != durometer(1, 3, 64.0)
+    assert all(0.0 <= durometer(seed, 1, shore_a) <= 100.0 for seed in range(20) for shore_a in (0.0, 100.0))

@@ -12,7 +12,7 @@ from typing import Annotated, Literal, Self, TypeAlias
 
 from pydantic import BaseModel, Field, model_validator
 
-from tester.base.units import Quantity
+from tester.base.units import SHORE_A, Quantity
 from tester.base.validation import Section
 from tester.inputs.materials.stated_law import LawModel
 
@@ -195,8 +195,10 @@ class CompoundModel(MaterialModel, frozen=True):
     batch: Text | None = None
     cure: CureModel | None = None
     density: Annotated[float, Quantity("kg/m3", ge=500, le=5000)] | None = None
-    hardness: Annotated[float, Quantity("1", ge=0, le=100)] | None = None
+    hardness: Annotated[float, Quantity(SHORE_A, True, ge=0, le=100)] | None = None
     """Shore A"""
+    hardness_tolerance: Annotated[float, Quantity(SHORE_A, True, gt=0, le=100)] | None = None
+    """Shore A: a hardness further off is a doubt (default 3)"""
     Tg: Celsius | None = None
     """glass transition"""
     poisson: Annotated[float, Quantity("1", ge=0.3, le=0.5)] = 0.5

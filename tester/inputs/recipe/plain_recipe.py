@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from itertools import count, product
 from typing import ClassVar
 
@@ -29,7 +29,10 @@ from tester.inputs.rig.rig_keys import value_at
 
 @dataclass(frozen=True, slots=True)
 class Mount(Step):
-    """A person puts a specimen on. ``piece`` counts from 1 in the plan, ``replicate`` from 1 in a specimen."""
+    """A person puts a specimen on. ``piece`` counts from 1 in the plan, ``replicate`` from 1 in a specimen.
+
+    ``hardness``: the person reads its hardness, too.
+    """
 
     kind: ClassVar[str] = "mount"
     specimen: int
@@ -37,6 +40,7 @@ class Mount(Step):
     piece: int
     compound: str
     note: str = ""
+    hardness: bool = field(default=False, kw_only=True)
 
     @property
     def title(self) -> str:
@@ -107,7 +111,8 @@ class SpecimenPart(RecipePart):
         numbers = count(1)
         pieces = product(specimens, range(1, recipe.replicates + 1))
         for piece, (specimen, replicate) in enumerate(pieces, start=1):
-            steps.append(self.mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.words))
+            mount = self.mount(len(steps), specimen.index, replicate, piece, specimen.compound, specimen.words)
+            steps.append(replace(mount, hardness=specimen.hardness))
             before: Setpoint | None = None
             for turn in turns:
                 steps += self.before_turn(len(steps), turn[0].values, turn[0].settings, rig)

@@ -48,6 +48,8 @@ class Specimen:
     note: str = ""
     checks: str = ""
     """What a person checks when it is put on."""
+    hardness: bool = False
+    """Whether a person reads its hardness when it is put on."""
 
     @property
     def words(self) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from datetime import date
-from typing import TYPE_CHECKING, Annotated, TypeAlias, cast
+from typing import TYPE_CHECKING, Annotated, Final, Literal, TypeAlias, cast
 
-from pydantic import AfterValidator, BeforeValidator, Field
+from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, Tag
 
-from tester.base.units import Quantity
+from tester.base.units import SHORE_A, Quantity
 from tester.base.validation import Section
 from tester.inputs.recipe.axis_lists import MAX_NAME
 from tester.inputs.recipe.plan import Specimen
@@ -16,6 +16,8 @@ from tester.inputs.recipe.plan import Specimen
 if TYPE_CHECKING:
     from tester.inputs.recipe.recipe_schema import Recipe
 
+PROMPT: Final = "prompt"
+_COLUMNS: Final = {"hardness": "hardness_shore_a", "diameter": "diameter_mm"}
 MAX_CHECKS = 20
 """Most items of a checklist: a person reads all of them at once, on a screen of 24 lines."""
 
@@ -33,8 +35,15 @@ def _as_list(value: object) -> object:
 
 Name: TypeAlias = Annotated[str, Field(min_length=1, max_length=MAX_NAME)]
 Day: TypeAlias = Annotated[str, AfterValidator(_day)]
-Hardnesses: TypeAlias = Annotated[
-    list[Annotated[float, Quantity("1", ge=0, le=100)]], BeforeValidator(_as_list), Field(min_length=1, max_length=100)
+_Read: TypeAlias = Annotated[
+    list[Annotated[float, Quantity(SHORE_A, True, ge=0, le=100)]],
+    BeforeValidator(_as_list),
+    Field(min_length=1, max_length=100),
+    Tag("read"),
+]
+Hardness: TypeAlias = Annotated[
+    _Read | Annotated[Literal["prompt"], Tag(PROMPT)],
+    Discriminator(lambda value: PROMPT if value == PROMPT else "read"),
 ]
 Diameters: TypeAlias = Annotated[
     list[Annotated[float, Quantity("mm", gt=0)]], BeforeValidator(_as_list), Field(min_length=1, max_length=100)
@@ -57,8 +66,20 @@ class OriginSection(Section, frozen=True):
 class MeasuredSection(Section, frozen=True):
     """What a person measured of a specimen before it was put on; recorded. Of several replicates a list, one each."""
 
-    hardness: Hardnesses | None = None
-    """Shore A, 0 to 100"""
+    @property
+    def asked(self) -> bool:
+        """Whether the question at mounting asks for the hardness."""
+        return self.hardness == PROMPT
+
+    @property
+    def listed(self) -> Iterator[tuple[str, Sequence[float]]]:
+        """The measured values by key, those that the recipe states."""
+        for key, values in (("hardness", self.hardness), ("diameter", self.diameter)):
+            if values is not None and not isinstance(values, str):
+                yield key, values
+
+    hardness: Hardness | None = None
+    """Shore A, 0 to 100; ``prompt``: the question at mounting asks for it"""
     diameter: Diameters | None = None
     """at room temperature; the rig file's geometry is what the run calculates with"""
 
@@ -77,7 +98,8 @@ def specimens_of(recipe: Recipe) -> tuple[Specimen, ...]:
     """Return a recipe's specimens for its plan, in the recipe's order."""
     checks = checks_of(recipe)
     return tuple(
-        Specimen(index, model.compound, model.note, checks) for index, model in enumerate(recipe.specimens, start=1)
+        Specimen(index, model.compound, model.note, checks, model.measured is not None and model.measured.asked)
+        for index, model in enumerate(recipe.specimens, start=1)
     )
 
 
@@ -92,20 +114,16 @@ def specimen_metadata(recipe: Recipe) -> dict[str, str]:
     for index, model in enumerate(recipe.specimens, start=1):
         if model.origin is not None:
             result |= {f"specimen_{index}_{key}": text for key, text in model.origin if text is not None}
-        if model.measured is not None:
-            for key, values in (
-                ("hardness_shore_a", model.measured.hardness), ("diameter_mm", model.measured.diameter)
-            ):  # fmt: skip
-                if values is not None:
-                    result[f"specimen_{index}_{key}"] = " ".join(f"{value:g}" for value in values)
+        for key, values in model.measured.listed if model.measured is not None else ():
+            result[f"specimen_{index}_{_COLUMNS[key]}"] = " ".join(f"{value:g}" for value in values)
     return result
 
 
 def wrong_counts(specimens: Sequence[SpecimenModel], replicates: int) -> str:
     """Return what is wrong with the number of values measured of each replicate; "" if nothing is."""
     for index, model in enumerate(specimens, start=1):
-        for key, values in model.measured or ():
-            if values is not None and len(values) != replicates:
+        for key, values in model.measured.listed if model.measured is not None else ():
+            if len(values) != replicates:
                 return (f"specimens, item {index}, measured.{key} has {len(values)} values"
                         f" (expected one for each replicate: {replicates})")  # fmt: skip
     return ""

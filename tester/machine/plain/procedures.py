@@ -11,11 +11,13 @@ from tester.analysis.judge import ALONE
 from tester.analysis.reduce import collected
 from tester.base.axes import Setpoint
 from tester.base.quantities import Quantities
+from tester.base.units import SHORE_A
 from tester.inputs.recipe.plain_recipe import Mount, PlainPart
 from tester.inputs.recipe.plan import ConditionStep, Step
 from tester.machine.activity import Activity, MoveFailedError
 from tester.machine.condition import MeasureCondition
 from tester.machine.executor import Procedures
+from tester.machine.hardness import with_hardness
 from tester.machine.measured import Ending, MeasuredRepeat
 from tester.machine.motions import Ask, ZeroOfCell
 from tester.machine.plain.context import PlainContext
@@ -61,7 +63,7 @@ class PutOn:
         """The step's title is the question to the person."""
         self.mount = step
         self.stand = Standstill(enabled=False)
-        self.ask = Ask(step.title)
+        self.ask = Ask(with_hardness(step.title), unit=SHORE_A) if step.hardness else Ask(step.title)
         self.answered = False
         self.zeros: dict[str, ZeroOfCell] = {}
         """The zeros of the sensors that are zeroed, by sensor name."""
@@ -73,6 +75,8 @@ class PutOn:
     def step(self, ctx: PlainContext) -> bool:
         """Return True when the specimen is mounted and the sensors are zeroed."""
         if not self.answered:
+            if self.mount.hardness:
+                self.ask.by_itself = ctx.hardness.by_itself(self.mount.piece, self.mount.compound)
             if not self.stand.step(ctx) or not self.ask.step(ctx):
                 return False
             self.answered = True
@@ -81,7 +85,7 @@ class PutOn:
 
     def _put_on(self, ctx: PlainContext) -> None:
         ctx.attendant.install(self.mount.specimen, self.mount.compound)
-        ctx.mount(self.mount)
+        ctx.mount(self.mount, self.ask.prompt(ctx))
         ctx.readings.slid_m = 0.0
         zeroed = (name for name, sensor in ctx.sensors.items() if sensor.profile.tare)
         self.zeros = {name: ZeroOfCell(ZERO_S, name.replace("_", " ")) for name in zeroed}

@@ -236,3 +236,14 @@ def test_a_broken_progress_line_is_noticed_although_a_thread_draws_it(monkeypatc
             console.show(0.0, Progress(), RunPosition())
     finally:
         console.end()
+
+
+def test_a_question_for_a_quantity_shows_what_to_type(keyboard: Typed, capsys: Output) -> None:
+    prompts = Prompts(person="anna")
+    prompt = prompts.ask(0.0, "install wheel 1", unit="Shore A")
+    console = Console(as_json=False, answer_yes=False)
+    console.attend(prompts)
+    assert 'type a number in Shore A, or with a unit (Shore A), or "yes", and Enter' in capsys.readouterr().err
+    keyboard.waiting = "64.5\n"
+    console.commands()
+    assert (prompt.quantity, prompt.by) == (64.5, "anna")

@@ -358,6 +358,31 @@ def test_a_prompt_waits_for_its_answer_and_a_no_leaves_it_waiting(tmp_path: Path
     assert "answer yes by client 1" in stage.texts("command")
 
 
+def test_a_hardness_is_typed_at_a_screen_and_stored_with_its_name(tmp_path: Path) -> None:
+    asked = SHORT.replace('compound: "1#"', 'compound: "1#"\n    measured: {hardness: prompt}')
+
+    def script(stage: Stage) -> Script:
+        yield stage.order(RunRecipe("short", text=asked, speed=None))
+        yield from stage.until(lambda view: view.prompt is not None and view.prompt.unit == "Shore A")
+        yield stage.order(Answer(1, "645"))
+        yield None
+        assert "expected 0 to 100 Shore A" in stage.refused["answer"]
+        yield stage.order(Answer(1, "64.5 Shore A"))
+        yield from stage.until(lambda view: view.prompt is None)
+        yield from stage.until(lambda view: "hardness" in {event.kind for event in stage.events})
+        yield stage.order(Stop())
+        yield from stage.until(over)
+
+    stage = play(tmp_path, script)
+    run = stage.views[-1].run
+    assert run is not None
+    with RunReader(Path(run.folder)) as reader:
+        (piece,) = reader.pieces()
+        (prompt,) = reader.prompts()
+    assert (piece.hardness_shore_a, piece.hardness_by) == (64.5, "client 1") and piece.hardness_utc
+    assert (prompt.answer, prompt.answered_by) == ("64.5 Shore A", "client 1")
+
+
 def test_a_trip_latches_until_it_is_acknowledged(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)

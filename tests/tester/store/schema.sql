@@ -142,7 +142,10 @@ CREATE TABLE piece (
     diameter_mm REAL,
     sliding_m REAL,
     updated_s REAL,
-    ground_s REAL
+    ground_s REAL,
+    hardness_shore_a REAL,
+    hardness_by TEXT NOT NULL DEFAULT '',
+    hardness_utc TEXT NOT NULL DEFAULT ''
 );
 CREATE TABLE wear_check (
     id INTEGER PRIMARY KEY,

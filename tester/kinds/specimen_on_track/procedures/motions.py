@@ -10,6 +10,7 @@ from typing import Final
 
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.machine.motions import Ask, Move, Power, Sequence, ZeroOfCell
+from tester.machine.prompts import DONE
 
 TARE_S: Final = 1.0
 """Averaging time of the cell's zero, s [A]."""
@@ -111,9 +112,12 @@ class WithoutPower(Move):
 class AskBesideTrack:
     """Ask a person to come near, with the track at rest and the drives off; an arm with a drive is raised first."""
 
-    def __init__(self, text: str) -> None:
-        """``text``: the question."""
+    def __init__(self, text: str, *, unit: str = "") -> None:
+        """``text``: the question; ``unit``: of a quantity that it asks for."""
         self.text = text
+        self.unit = unit
+        self.by_itself = DONE
+        """The answer without a person."""
         self.moves: Sequence | None = None
         self.ask: Ask | None = None
 
@@ -135,7 +139,8 @@ class AskBesideTrack:
         if self.ask is None:
             if not self.moves.step(ctx):
                 return False
-            self.ask = Ask(self.text)
+            self.ask = Ask(self.text, unit=self.unit)
+            self.ask.by_itself = self.by_itself
             ctx.progress.phase = "prompt"
         return self.ask.step(ctx)
 

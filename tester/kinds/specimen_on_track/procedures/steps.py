@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence as Steps
 
+from tester.base.units import SHORE_A
 from tester.inputs.recipe.plan import PromptStep, Step
 from tester.kinds.specimen_on_track.context import TrackContext
 from tester.kinds.specimen_on_track.procedures.motions import AskBesideTrack
@@ -12,6 +13,7 @@ from tester.kinds.specimen_on_track.recipe.plan_steps import Cover, MountSpecime
 from tester.machine.activity import Activity
 from tester.machine.context import MountedSpecimen
 from tester.machine.executor import Procedures
+from tester.machine.hardness import with_hardness
 from tester.machine.result_keeping import StoredResults
 from tester.machine.soak import SoakWait
 
@@ -26,11 +28,14 @@ class InstallSpecimen(AskBesideTrack):
         text = f"put specimen {step.piece} on the arm and raise it: {step.compound}{note}"
         if step.again:
             text = f"the run continues with specimen {step.piece} on the raised arm: {step.compound}{note}"
-        super().__init__(text)
+        hardness = step.hardness and not step.again
+        super().__init__(with_hardness(text) if hardness else text, unit=SHORE_A if hardness else "")
 
     def step(self, ctx: TrackContext) -> bool:
         """Done when it is mounted."""
         ctx.demand.tared = False
+        if self.unit:
+            self.by_itself = ctx.hardness.by_itself(self.install.piece, self.install.compound)
         if not super().step(ctx):
             return False
         one = self.install
@@ -45,7 +50,7 @@ class InstallSpecimen(AskBesideTrack):
         if one.again:
             ctx.mounted = MountedSpecimen(one.piece, one.specimen, one.compound, one.sliding_m)
         else:
-            ctx.mount(one)
+            ctx.mount(one, self.ask.prompt(ctx) if self.ask is not None else None)
         return True
 
 

@@ -13,6 +13,7 @@ from tester.kinds.wheel_on_belt.procedures.thermal_steps import CoolDown
 from tester.kinds.wheel_on_belt.recipe.plan_steps import Cool
 from tester.kinds.wheel_on_belt.recipe.wheel_change import INSERTED, TOUCH
 from tester.machine.motions import Ask, Move, Power, Sequence
+from tester.machine.prompts import DONE, Prompt
 
 STILL_WARM_K: Final = 5.0
 """Greatest rise of a stopped hub's reading over that while turning without a warning, K [A]."""
@@ -104,6 +105,8 @@ class AskAtRest:
         only for a tool that keeps hands off the wheel; ``unit``: of a quantity that it asks for."""
         self.text = text
         self.unit = unit
+        self.by_itself = DONE
+        """The answer without a person."""
         self.cool = Cool(INSERTED, hub_below_c)
         self.moves: list[CoolDown | HeaterProof | Sequence] = []
         self.ask: Ask | None = None
@@ -123,8 +126,14 @@ class AskAtRest:
             if not self._at_rest(ctx):
                 return False
             self.ask = Ask(self._question(ctx), unit=self.unit)
+            self.ask.by_itself = self.by_itself
         self.answered = self.answered or self.ask.step(ctx)
         return self.answered and self.free.step(ctx)
+
+    def prompt(self, ctx: Context) -> Prompt:
+        """Return the question as it was last put; only after it has been."""
+        assert self.ask is not None
+        return self.ask.prompt(ctx)
 
     def _at_rest(self, ctx: Context) -> bool:
         if not self.moves:

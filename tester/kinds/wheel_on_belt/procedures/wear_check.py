@@ -9,13 +9,11 @@ later checks.
 
 from __future__ import annotations
 
-import re
 from dataclasses import replace
 from math import hypot, isfinite, pi, sqrt
 from typing import Final
 
 from tester.analysis.wear_rate import NO_CONDITION, WearCheck
-from tester.base.units import UnitError, parse
 from tester.kinds.wheel_on_belt.budget import ROLL_CHECK_N, ROLL_CHECK_TURNS, roll_check_u_mm
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.image.process_image import NAN
@@ -133,12 +131,10 @@ class CheckByPerson:
         """Done when it is answered; after an impossible diameter the question is repeated."""
         if not self.ask.step(ctx):
             return False
-        asked = self.ask.ask
-        answer = ctx.prompts.asked[asked.number - 1].answer if asked is not None else None
-        found_mm = measured_mm(answer or "")
-        wheel = ctx.wheel
+        prompt = self.ask.prompt(ctx)
+        found_mm, wheel = prompt.quantity, ctx.wheel
         if found_mm is None:
-            ctx.journal.event(ctx.now, "wear", f'no diameter measured: "{answer}"')
+            ctx.journal.event(ctx.now, "wear", f'no diameter measured: "{prompt.answer}"')
             return True
         layer_mm = 2.0 * ctx.rig.observer.wheel.rubber_layer
         least_mm, most_mm = wheel.installed_mm - layer_mm, wheel.installed_mm + MORE_THAN_NEW_MM
@@ -174,17 +170,6 @@ def _compared(ctx: Context, loss_mm: float, u_mm: float) -> str:
 
 MORE_THAN_NEW_MM: Final = 2.0
 """Greatest excess of a wheel over the rig file's new wheel, mm [A]: moulds differ."""
-
-
-def measured_mm(answer: str) -> float | None:
-    """Return the number in an answer such as ``89.62 mm`` or ``89,62``; None without a number."""
-    match = re.fullmatch(r"\s*(\d{1,4}(?:[.,]\d{1,6})?)\s*(?:mm)?\s*", answer, re.ASCII)
-    if match is not None:
-        return float(match[1].replace(",", "."))
-    try:
-        return parse(answer, "mm")
-    except UnitError:
-        return None
 
 
 def conclude(

@@ -6,6 +6,7 @@ from dataclasses import replace
 from math import nan
 from typing import Final
 
+from tester.base.units import SHORE_A
 from tester.inputs.recipe.plan import Mounted
 from tester.kinds.wheel_on_belt.context import Context
 from tester.kinds.wheel_on_belt.procedures.first_contact import FirstContact
@@ -17,6 +18,7 @@ from tester.kinds.wheel_on_belt.procedures.wheel_life import SURE_U, wheel_of
 from tester.kinds.wheel_on_belt.procedures.zero_check import ZeroCheck, informs, is_due
 from tester.kinds.wheel_on_belt.recipe.plan_steps import ChangeBelt, Install, PreGrind
 from tester.machine.activity import MoveFailedError
+from tester.machine.hardness import keep_hardness, with_hardness
 from tester.machine.motions import Power, Sequence
 from tester.store.records import PieceInfo
 
@@ -64,7 +66,7 @@ class InstallWheel:
             text = f"mount wheel {step.wheel} again: {step.compound}{note}"
         if step.worn is not None:
             text = f"the run resumes with wheel {step.wheel}: {step.compound}{note}, mounted as it was"
-        self.ask = AskAtRest(text)
+        self.ask = AskAtRest(with_hardness(text), unit=SHORE_A) if step.hardness else AskAtRest(text)
         self.mounted = False
         self.contact: ShowContact | None = None
 
@@ -78,6 +80,8 @@ class InstallWheel:
         """Done when the wheel is mounted and the cell tared."""
         ctx.demand.surface_c = nan
         if not self.mounted:
+            if self.install.hardness:
+                self.ask.by_itself = ctx.hardness.by_itself(self.install.wheel, self.install.compound)
             self.mounted = self.ask.step(ctx)
             return False
         if self.contact is None:
@@ -116,6 +120,8 @@ class InstallWheel:
                 wheel.cold_mm, updated_s=ctx.now,
             )
         )  # fmt: skip
+        if step.hardness:
+            keep_hardness(ctx, self.ask.prompt(ctx), wheel.wheel, wheel.compound)
 
     def _back_on(self, ctx: Context) -> bool:
         """Mount the specimen's last wheel again and return True; return False without a wheel."""

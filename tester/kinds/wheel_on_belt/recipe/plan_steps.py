@@ -22,7 +22,7 @@ class Install(Step):
     """A person mounts a wheel. ``wheel`` counts from 1 in the plan, ``replicate`` from 1 in a specimen.
 
     ``worn``: the state of a wheel that an interruption left mounted; None for a new wheel. ``again``: an earlier
-    wheel is mounted again, with its wear.
+    wheel is mounted again, with its wear. ``hardness``: the person reads that of a new wheel, too.
     """
 
     kind: ClassVar[str] = "install"
@@ -33,6 +33,7 @@ class Install(Step):
     replicate: int = 1
     worn: Mounted | None = None
     again: bool = False
+    hardness: bool = False
 
     @property
     def title(self) -> str:

@@ -61,7 +61,8 @@ def prepare_wheel(
     steps: list[WheelStep] = [Cool(INSERTED)] if cool else []
     if belt is not None:
         steps.append(belt)
-    steps.append(Install(INSERTED, specimen.index, wheel, specimen.compound, specimen.words, replicate))
+    compound, asked = specimen.compound, specimen.hardness
+    steps.append(Install(INSERTED, specimen.index, wheel, compound, specimen.words, replicate, hardness=asked))
     steps += prepare.person_steps
     if grind is not None:
         if cool:

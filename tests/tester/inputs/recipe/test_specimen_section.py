@@ -10,6 +10,7 @@ from tester.inputs.recipe.conditions import metadata_of
 from tester.inputs.recipe.loader import check, load_checked
 from tester.kinds import load_rig
 from tester.kinds.specimen_on_track.recipe.part import PART
+from tester.kinds.specimen_on_track.recipe.plan_steps import MountSpecimen
 from tester.kinds.specimen_on_track.rig import TrackConfig
 
 SPECIMEN = "{compound: SBR, note: die 3, origin: {lot: A12, mixed: 2026-10-30, mould: M7}, measured: {hardness: 64.5}}"
@@ -63,7 +64,7 @@ def test_too_few_values_are_refused_by_name() -> None:
 @pytest.mark.parametrize(
     ("wrong", "says"),
     [
-        ("measured: {hardness: 101}", "101 is too large (expected at most 100)"),
+        ("measured: {hardness: 101}", "101 Shore A is too large (expected at most 100 Shore A)"),
         ("measured: {hardness: 5 mm}", "hardness"),
         ("measured: {diameter: 0 mm}", "diameter"),
         ("origin: {cured: last week}", '"last week" is not a day (expected one as "2026-11-25")'),
@@ -89,3 +90,16 @@ def test_the_example_of_the_page_is_valid() -> None:
 
 def test_a_checklist_is_short_enough_to_read() -> None:
     assert "checklist" in problems(text(more=f"checklist: [{', '.join('abcdefghijklmnopqrstu')}]\n"))
+
+
+def test_a_hardness_to_be_asked_is_no_value_and_goes_with_each_specimen() -> None:
+    asked = "{compound: SBR, measured: {hardness: prompt}}, {compound: SBR}"
+    loaded = load_checked(text(asked, "replicates: 2\n"), RIG, PART)
+    plan = PART.expand(loaded.recipe, RIG)
+    assert loaded.doubts == () and plan.metadata == {}
+    mounts = [step.hardness for step in plan.steps if isinstance(step, MountSpecimen)]
+    assert mounts == [True, True, False, False]
+
+
+def test_any_other_text_is_no_hardness() -> None:
+    assert '"often" is not' in problems(text("{compound: SBR, measured: {hardness: often}}"))

@@ -8,7 +8,7 @@ import pytest
 
 from tester.inputs.recipe.plan import Plan
 from tester.kinds.wheel_on_belt.procedures.operator_access import AskAtRest
-from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling, measured_mm
+from tester.kinds.wheel_on_belt.procedures.wear_check import CheckByPerson, CheckByRolling
 from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, make_bench, plan_of
 from tests.tester.kinds.wheel_on_belt.procedures.test_condition import Results
 from tests.tester.kinds.wheel_on_belt.procedures.test_steps import LOADS, Wearing, steps_of, walk
@@ -155,15 +155,6 @@ def test_a_loss_below_the_resolution_teaches_no_rate(rolled: Bench) -> None:
 
 
 # -- by a person ----------------------------------------------------------------------------------------------
-
-
-@pytest.mark.parametrize(
-    "answer, found",
-    [("89.62 mm", 89.62), (" 89,62", 89.62), ("89", 89.0), ("yes", None), ("about 89", None), ("", None), ("-3", None),
-     ("0.08962 m", 89.62)],
-)
-def test_the_number_of_an_answer(answer: str, found: float | None) -> None:
-    assert measured_mm(answer) == found
 
 
 def answered(bench: Bench, *answers: str) -> CheckByPerson:
