@@ -26,7 +26,7 @@ from sim.faults.scene import Effect
 from sim.faults.sensors import CROSSED, SensorFault, controller_output
 from sim.machines.wheel_on_belt.faults import heat as h
 from sim.machines.wheel_on_belt.faults import mechanics as k
-from sim.machines.wheel_on_belt.rig import FORCES
+from sim.machines.wheel_on_belt.mechanics import FORCES
 
 
 class WheelExposure(Enum):
