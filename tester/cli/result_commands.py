@@ -18,7 +18,7 @@ from tester.cli.stored_runs import run_folder
 from tester.cli.text_table import dump, fields, shown
 
 if TYPE_CHECKING:
-    from tester.analysis.reference import ReferenceWatch
+    from tester.analysis.reference_watch import ReferenceWatch
     from tester.results.formats import Format
     from tester.results.run_results import RunResults
     from tester.results.table_rows import TableRow

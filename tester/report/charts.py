@@ -9,7 +9,7 @@ from itertools import permutations
 from math import isfinite
 
 from tester.analysis.pressure import pressure_kpa
-from tester.analysis.reference import ControlChart, ControlPoint
+from tester.analysis.reference_watch import ControlChart, ControlPoint
 from tester.analysis.results import RepeatResult
 from tester.base.axes import Axis, AxisValue, Setpoint, condition_words, plain
 from tester.base.words import coefficient

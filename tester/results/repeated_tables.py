@@ -12,7 +12,8 @@ from math import isfinite
 from typing import Final
 
 from tester.analysis.difference import Difference
-from tester.analysis.reference import ControlChart, ControlPoint, CounterfaceDrift, Reference
+from tester.analysis.reference import CounterfaceDrift, Reference
+from tester.analysis.reference_watch import ControlChart, ControlPoint
 from tester.analysis.repeated_settings import SettingMeasurement, difference_of
 from tester.results.columns import Column, Output, Table, Value, axis_column, piece_key
 from tester.results.run_results import RunResults

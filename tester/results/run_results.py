@@ -10,7 +10,8 @@ from math import isfinite
 from tester.analysis.flags import DISAGREES, OUT_OF_LIMITS, REFERENCE, THERMOMETER, flags_in, joined
 from tester.analysis.left_out import Combining, combining_of
 from tester.analysis.measurand import pooled, with_budget, with_budget_of_replicates
-from tester.analysis.reference import RESERVED, ReferenceWatch, doubted, is_reference
+from tester.analysis.reference import RESERVED, is_reference
+from tester.analysis.reference_watch import ReferenceWatch, doubted
 from tester.analysis.repeats import ConditionResult, combine_replicates
 from tester.analysis.results import NAN, SoakCheck
 from tester.analysis.ring_errors import RingRun

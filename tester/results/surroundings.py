@@ -9,14 +9,8 @@ from math import inf, isfinite, sqrt
 from tester.analysis.kelvin import UNKNOWN, Slope, SurfaceWarmth, slope_of_pairs
 from tester.analysis.left_out import REPEATABILITY
 from tester.analysis.measurand import Surroundings, with_budget
-from tester.analysis.reference import (
-    CounterfaceDrift,
-    KnownScatter,
-    Reference,
-    ReferenceWatch,
-    control_charts,
-    counterface_drift,
-)
+from tester.analysis.reference import CounterfaceDrift, KnownScatter, Reference, counterface_drift
+from tester.analysis.reference_watch import ReferenceWatch, control_charts
 from tester.analysis.repeats import ConditionResult
 from tester.analysis.results import NAN
 from tester.analysis.terms import NO_SIZE, Acts, Size, with_settings

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Final
 
-from tester.analysis.reference import ControlChart, ControlPoint
+from tester.analysis.reference_watch import ControlChart, ControlPoint
 from tester.report.chart import Chart, ChartPanel, ChartSurface, Figure, Series
 from tester.report.charts import control_chart
 

@@ -12,7 +12,7 @@ from xml.etree import ElementTree
 
 import pytest
 
-from tester.analysis.reference import ControlChart, ControlPoint, ReferenceWatch
+from tester.analysis.reference_watch import ControlChart, ControlPoint, ReferenceWatch
 from tester.base.plugins import MissingExtraError
 from tester.base.words import FORBIDDEN
 from tester.report.charts import Material, values_of
