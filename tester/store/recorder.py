@@ -7,15 +7,13 @@ scan's thread calls the verbs.
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Iterable, Mapping
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Mapping
 
 from tester.analysis.results import Burst, ConditionStatus, RepeatResult, RepeatStatus, SoakCheck
 from tester.analysis.wear_rate import WearCheck
 from tester.store.chain import Cell
 from tester.store.journal_records import StoredEvent, StoredExclusion, StoredParameter
 from tester.store.kind_rows import axis_rows, budget_rows, setpoint_columns
-from tester.store.record_schema import TIMES
 from tester.store.records import (
     NAN,
     SURFACE_EVENT,
@@ -29,6 +27,7 @@ from tester.store.records import (
     StoredMaterial,
     Travel,
 )
+from tester.store.row_queue import RowQueue
 from tester.store.sql import (
     Batch,
     Judged,
@@ -43,67 +42,12 @@ from tester.store.sql import (
     update,
 )
 
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
-
 URGENT_SEVERITIES = frozenset({"alarm", "trip"})
 """Events of these severities are committed at once."""
 
 
-def no_utc() -> str:
-    """Return the wall-clock text of a recorder without a clock: ""."""
-    return ""
-
-
-class Recorder:
+class Recorder(RowQueue):
     """The verbs of a record. Subclasses decide what happens to the rows."""
-
-    def __init__(self, utc: Callable[[], str] = no_utc) -> None:
-        """Number repeats, events, prompts and trips from 1; ``utc`` returns the wall clock as ISO 8601 text."""
-        self._utc = utc
-        self._repeats = 0
-        self._events = 0
-        self._prompts = 0
-        self._trips = 0
-
-    origin_s: float = 0.0
-    """Offset of every recorded rig time: a resumed run counts from its interruption. It may change only while the queue
-    is empty.
-    """
-    failed: str | None = None
-    """Why nothing more can be written, None while writing works; then the run must end in a controlled stop."""
-    overruns: int = 0
-    """Samples dropped because the queue was full."""
-    on_event: Callable[[float, str, str, str], None] | None = None
-    """Called with every recorded event: rig time in s, kind, text, severity."""
-
-    def sample(self, row: tuple[float, ...]) -> None:
-        """Record one sample: an exact tuple with a value for each recorded channel. In every scan: below 1 us."""
-        raise TypeError("a recorder defines what happens to samples")
-
-    def _put(self, batch: Batch) -> None:
-        raise TypeError("a recorder defines what happens to statements")
-
-    def _write(self, *statements: Statement, urgent: bool = False) -> Ticket:
-        ticket = Ticket()
-        self._put(Batch(statements, ticket, urgent))
-        return ticket
-
-    def _row(self, table: str, record: DataclassInstance | None = None, /, **values: Cell) -> Statement:
-        """Return the INSERT of a row from values by column and a record's fields; rig times count from the origin."""
-        columns = columns_in(record) if record is not None else {}
-        return insert(table, self._from_origin(table, {**values, **columns, **values}))
-
-    def _change(self, table: str, values: Mapping[str, Cell], **where: Cell) -> Statement:
-        """Return the UPDATE of the rows that match ``where``; rig times count from the origin."""
-        return update(table, self._from_origin(table, values), where)
-
-    def _from_origin(self, table: str, values: Mapping[str, Cell]) -> dict[str, Cell]:
-        times = TIMES.get(table, ())
-        return {
-            name: value + self.origin_s if name in times and isinstance(value, int | float) else value
-            for name, value in values.items()
-        }
 
     # The run
 

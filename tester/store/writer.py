@@ -31,7 +31,8 @@ from tester.store.chain import Chain
 from tester.store.disk import Reserve, file_identity, sync_folder
 from tester.store.kind_rows import add_channels, recorded_channels
 from tester.store.record_schema import StoreError, migrate, version_of
-from tester.store.recorder import NullRecorder, Recorder, no_utc
+from tester.store.recorder import NullRecorder, Recorder
+from tester.store.row_queue import no_utc
 from tester.store.sample_blocks import BLOCK_ROWS, pack
 from tester.store.sql import Batch, Judged, Ticket, insert
 
