@@ -11,8 +11,10 @@ LONGEST = 60
 """Most characters of each name."""
 
 
-def who_here(role: str) -> str:
-    """Return the name under which a program of this user joins a service, such as ``ada at lab-pc (screen)``."""
+def who_here(role: str, person: str = "") -> str:
+    """Return the name under which a program joins a service for a person ("": its user), such as ``ada at lab-pc
+    (screen)``.
+    """
     host = platform.node().partition(".")[0] or "this computer"
-    name, place = (" ".join(harmless(text).split())[:LONGEST] for text in (user(), host))
+    name, place = (" ".join(harmless(text).split())[:LONGEST] for text in (person or user(), host))
     return f"{name} at {place} ({role})"

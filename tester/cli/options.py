@@ -171,8 +171,8 @@ def address_named(text: str) -> Address | None:
     return address_of(text) if text else None
 
 
-def name_here() -> str:
-    """Return this command's name at the service."""
+def name_here(person: str = "") -> str:
+    """Return this command's name at the service; ``person``: who gives it, "" for the user."""
     from tester.base.who import who_here
 
-    return who_here("command")
+    return who_here("command", person)

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Awaitable, Callable
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
 import click
 
-from tester.base.processes import EXIT_DONE, EXIT_FAILED, EXIT_UNREACHABLE
+from tester.base.processes import EXIT_DONE, EXIT_FAILED
 from tester.cli.options import (
     SpeedType,
-    address_named,
     command,
     connect_option,
     json_option,
-    name_here,
     operator_option,
     print_json,
     runs_option,
@@ -24,7 +22,7 @@ from tester.cli.options import (
     yes_option,
 )
 from tester.cli.queue_words import check_lines, queue_lines
-from tester.cli.service_commands import NO_SERVICE, take_option
+from tester.cli.service_commands import NO_SERVICE, carry_out, take_option, with_client
 from tester.cli.text_table import shown
 
 if TYPE_CHECKING:
@@ -84,7 +82,7 @@ def add(
             words = f"item {numbers[0]}" if len(numbers) == 1 else f"items {numbers[0]} to {numbers[-1]}"
             click.echo(f"{words} added")
 
-    return _carry_out(address, work)
+    return carry_out(address, work)
 
 
 ADD_S = 150.0
@@ -246,15 +244,12 @@ def key(name: str, listed: bool, revoke: int | None, out: Path) -> None:
 
 def _edit(address: str, make: Callable[[int], Action], *, control: bool = False, take: bool = False) -> int:
     """Change the queue as it is now, and return the exit code."""
-    from tester.service.commands import TakeControl
 
     async def work(client: Client) -> None:
-        if take:
-            await client.command(TakeControl(force=True))
         revision = client.queue.revision if client.queue is not None else 0
         await client.command(make(revision))
 
-    return _carry_out(address, work, control=control)
+    return carry_out(address, work, control=control, take=take)
 
 
 def _view(address: str, out: Path, rig_name: str) -> QueueView:
@@ -269,7 +264,7 @@ def _view(address: str, out: Path, rig_name: str) -> QueueView:
         found.append(client.queue)
 
     try:
-        _with_service(address, work, control=False)
+        with_client(address, work)
     except NoServiceError:
         return _stored(out, rig_name)
     return found[0]
@@ -285,37 +280,6 @@ def _stored(out: Path, rig_name: str) -> QueueView:
     rig = load_rig(rig_name)
     queue = read_queue(queue_folder(out, rig.name, simulated=rig.simulated))
     return view_of(queue, f"standing: {NO_SERVICE}", clock.utc_now())
-
-
-def _carry_out(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool = False) -> int:
-    """Do something with the service; print why not, and return the exit code."""
-    from tester.service.client import LostError, NoServiceError, RefusedError
-
-    try:
-        _with_service(address, work, control=control)
-    except NoServiceError:
-        click.echo(NO_SERVICE, err=True)
-        return EXIT_UNREACHABLE
-    except RefusedError as error:
-        hint = ": `--take` takes control" if "has control" in str(error) else ""
-        click.echo(shown(f"refused: {error}{hint}"), err=True)
-        return EXIT_FAILED
-    except (LostError, TimeoutError) as error:
-        click.echo(f"no answer: {error}", err=True)
-        return EXIT_FAILED
-    return EXIT_DONE
-
-
-def _with_service(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool) -> None:
-    import asyncio
-
-    from tester.service.client import Client
-
-    async def session() -> None:
-        async with await Client.connect(address_named(address), name=name_here(), control=control) as client:
-            await work(client)
-
-    asyncio.run(session())
 
 
 def _print_whole(value: object) -> None:

@@ -66,7 +66,7 @@ def status(address: str, as_json: bool) -> int:
     from tester.service.client import NoServiceError
 
     try:
-        _with_client(address, ask, control=False)
+        with_client(address, ask)
     except NoServiceError as error:
         if as_json:
             print_json({"service": False, "mode": None, "reason": str(error)})
@@ -108,37 +108,57 @@ def ack(address: str, take: bool) -> int:
 
 def give(address: str, action: Action, take: bool, *, control: bool = True, show_folder: bool = False) -> int:
     """Give the service one command and return the exit code; ``show_folder``: print the run's folder."""
-    from tester.service.client import LostError, NoServiceError, RefusedError
-    from tester.service.commands import TakeControl
 
     async def give(client: Client) -> None:
-        if control and take:
-            await client.command(TakeControl(force=True))
         result = await client.command(action)
         if show_folder and isinstance(result, dict):
             click.echo(str(result["folder"]))
 
+    return carry_out(address, give, control=control, take=take)
+
+
+def carry_out(
+    address: str, work: Callable[[Client], Awaitable[None]], *, control: bool = False, take: bool = False,
+    person: str = "", unreachable: str = NO_SERVICE,
+) -> int:  # fmt: skip
+    """Do something with the service, print why not, and return the exit code.
+
+    ``take``: first take control, where control is asked for. ``person``: who joins, "" for the user. ``unreachable``:
+    printed where no service answers.
+    """
+    from tester.service.client import LostError, NoServiceError, RefusedError
+    from tester.service.commands import TakeControl
+
+    async def controlled(client: Client) -> None:
+        if control and take:
+            await client.command(TakeControl(force=True))
+        await work(client)
+
     try:
-        _with_client(address, give, control=control)
+        with_client(address, controlled, control=control, person=person)
     except NoServiceError:
-        click.echo(NO_SERVICE, err=True)
+        click.echo(shown(unreachable), err=True)
         return EXIT_UNREACHABLE
-    except (RefusedError, LostError, TimeoutError) as error:
-        may_take = control and not take
-        hint = ": `--take` takes control" if may_take and "has control" in str(error) else ""
-        click.echo(f"refused: {error}{hint}" if isinstance(error, RefusedError) else f"no answer: {error}", err=True)
+    except RefusedError as error:
+        may_take = control and not take and "has control" in str(error)
+        click.echo(shown(f"refused: {error}{': `--take` takes control' if may_take else ''}"), err=True)
+        return EXIT_FAILED
+    except (LostError, TimeoutError) as error:
+        click.echo(f"no answer: {error}", err=True)
         return EXIT_FAILED
     return EXIT_DONE
 
 
-def _with_client(address: str, work: Callable[[Client], Awaitable[None]], *, control: bool) -> None:
-    """Connect, do something, hang up. Raises NoServiceError and what the work raises."""
+def with_client(
+    address: str, work: Callable[[Client], Awaitable[None]], *, control: bool = False, person: str = ""
+) -> None:
+    """Connect for a person ("": the user), do something, hang up. Raises NoServiceError and what the work raises."""
     import asyncio
 
     from tester.service.client import Client
 
     async def session() -> None:
-        async with await Client.connect(address_named(address), name=name_here(), control=control) as client:
+        async with await Client.connect(address_named(address), name=name_here(person), control=control) as client:
             await work(client)
 
     asyncio.run(session())

@@ -46,7 +46,7 @@ class Word:
 def parse_target(text: str) -> tuple[int, int]:
     """Return condition and repeat of a text such as ``3/2``; raises CannotExcludeError."""
     match = re.fullmatch(r"\s*(\d{1,9})\s*/\s*(\d{1,9})\s*", text, re.ASCII)
-    if match is None:
+    if match is None or not int(match[2]):  # a command of the service takes repeat 0 as all of them
         raise CannotExcludeError(f'expected CONDITION/REPEAT such as 3/2 (as in repeats.csv), got "{text}"')
     return int(match[1]), int(match[2])
 

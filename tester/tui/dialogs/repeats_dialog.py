@@ -62,7 +62,9 @@ class ExcludeDialog(Dialog):
         self.dismiss(None)
 
     async def _record(self, host: HostApp, target: str, reason: str, who: str) -> None:
-        arguments = (f"--reason={reason}", f"--operator={who}", "--", str(self.stored.folder), target)
+        service = host.options.address
+        connect = [] if service is None else [f"--connect={service}"]
+        arguments = (f"--reason={reason}", f"--operator={who}", *connect, "--", str(self.stored.folder), target)
         done, words = await call("results", self.verb, *arguments)
         host.say(words if done else f"not done: {words}", problem=not done, lasting=True)
         if done:

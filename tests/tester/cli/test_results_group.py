@@ -3,12 +3,19 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.cli.main import invoke
+from tester.service.address import HAS_UNIX
+from tester.service.commands import AddNote, ExcludeRepeat
+from tester.store.notes import notes_of
 from tester.store.run_reader import RunReader
+from tests.tester.service.fake import FakeService
+from tests.tester.service.views import state
 from tests.tester.store.build import small_run
 
 
@@ -64,3 +71,81 @@ def test_what_is_wrong_is_said(
 ) -> None:
     assert invoke(["results", *arguments]) == code
     assert message in capsys.readouterr().err
+
+
+# A run under way: its service writes
+
+posix = pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets")
+
+
+@pytest.fixture
+def live(home: Path, folder: Path) -> Iterator[str]:
+    """Return the name of a run on which a process works: the one that the played service shows."""
+    shown = state().run
+    assert shown is not None
+    run = small_run(home / shown.folder)
+    with ExclusiveUse() as use:
+        use.lock_file(shown.name, run / RUN_LOCK, shown.name, lasting=False)
+        yield shown.name
+
+
+@posix
+def test_an_exclusion_on_a_run_under_way_goes_to_its_service(
+    live: str, fake: FakeService, capsys: pytest.CaptureFixture[str]
+) -> None:
+    before = (Path("runs") / live / "run.db").read_bytes()
+    assert said("exclude", live, "2/1", "--reason", "debris") == said("include", live, "2/1", "--reason", "none") == 0
+    assert [order.action for order in fake.orders] == [
+        ExcludeRepeat(live, 2, "debris", 1), ExcludeRepeat(live, 2, "none", 1, include=True)
+    ]  # fmt: skip
+    err = capsys.readouterr().err
+    assert err.startswith("2/1 excluded: 1#, ") and "its tables are made anew at the run's end" in err
+    assert (Path("runs") / live / "run.db").read_bytes() == before
+
+
+@posix
+def test_a_note_goes_there_under_the_operators_name(live: str, fake: FakeService) -> None:
+    assert said("note", live, "belt swept", "--tag", "swept") == 0
+    (order,) = fake.orders
+    assert order.action == AddNote(live, "belt swept", ("swept",))
+    assert order.name.startswith("ada [b] at ") and order.name.endswith(" (command)")
+
+
+@posix
+def test_the_notes_of_a_run_under_way_are_printed_without_a_service(
+    live: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert invoke(["results", "note", live]) == 0
+    assert capsys.readouterr().out.endswith("tags: none\n")
+
+
+@posix
+def test_a_refusal_of_the_service_has_its_reason(
+    live: str, fake: FakeService, capsys: pytest.CaptureFixture[str]
+) -> None:
+    fake.refusals["exclude"] = "this simulated run is recorded in parts: exclude the repeat after its end"
+    assert said("exclude", live, "2/1", "--reason", "debris") == 1
+    assert capsys.readouterr().err == f"refused: {fake.refusals['exclude']}\n"
+
+
+@posix
+@pytest.mark.parametrize("command", [("exclude", "2/1", "--reason", "x"), ("note", "x")])
+def test_without_a_service_it_names_the_process_and_changes_nothing(
+    command: tuple[str, ...], live: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert said(command[0], live, *command[1:]) == 4
+    err = capsys.readouterr().err
+    assert f"{live} is under way: process " in err and "no service answers: wait for its end, or --connect" in err
+    with RunReader(Path("runs") / live) as reader:
+        assert reader.exclusions() == [] and notes_of(reader) == []
+
+
+@posix
+def test_another_run_of_the_service_gets_nothing(
+    live: str, fake: FakeService, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    run = small_run(tmp_path / "elsewhere" / live)  # of the same name, in another folder
+    with ExclusiveUse() as use:
+        use.lock_file(live, run / RUN_LOCK, live, lasting=False)
+        assert said("exclude", str(run), "2/1", "--reason", "x") == 1
+    assert "not at this service" in capsys.readouterr().err and fake.orders == []

@@ -17,39 +17,9 @@ from tester.service.address import HAS_UNIX, Address
 from tester.service.client import Client
 from tester.service.commands import RunRecipe, Stop
 from tests.tester.service.fake import FakeService
-from tests.tester.service.views import hostile, state
+from tests.tester.service.views import state
 
-pytestmark = pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets")
-
-
-@pytest.fixture(autouse=True)
-def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The user's service is at home in the test's folder."""
-    where = tmp_path / "runtime"
-    where.mkdir(mode=0o700)
-    monkeypatch.setenv("TESTER_RUNTIME_DIR", str(where))
-    return where
-
-
-@pytest.fixture
-def fake(folder: Path) -> Iterator[FakeService]:
-    """A played service in a thread of its own."""
-    made = FakeService(folder)
-    up, end = Event(), Event()
-
-    async def live() -> None:
-        async with made:
-            made.show(hostile(state()))
-            up.set()
-            while not end.is_set():
-                await asyncio.sleep(0.01)
-
-    thread = Thread(target=lambda: asyncio.run(live()))
-    thread.start()
-    up.wait(20)
-    yield made
-    end.set()
-    thread.join(20)
+pytestmark = [pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets"), pytest.mark.usefixtures("folder")]
 
 
 def test_status_says_that_nothing_runs(capsys: pytest.CaptureFixture[str]) -> None:

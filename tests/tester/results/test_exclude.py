@@ -180,7 +180,7 @@ def test_a_run_that_was_cut_off_takes_the_word_and_gets_no_tables_yet(tmp_path: 
     assert [path.name for path in folder.iterdir()] == ["run.db"]
 
 
-@pytest.mark.parametrize("text", ["", "3", "3/", "/2", "3/2/1", "a/b", "-1/2", "٣/2"])
+@pytest.mark.parametrize("text", ["", "3", "3/", "/2", "3/2/1", "a/b", "-1/2", "٣/2", "3/0"])
 def test_a_repeat_that_is_not_named_as_in_the_table_is_refused(text: str) -> None:
     with pytest.raises(CannotExcludeError, match="CONDITION/REPEAT"):
         parse_target(text)

@@ -8,10 +8,12 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.results.run_files import write_all
 from tester.results.run_results import results_of
-from tester.service.commands import Stop
+from tester.service.address import HAS_UNIX
+from tester.service.commands import ExcludeRepeat, Stop
 from tester.service.state_view import ProgressView
 from tester.store.run_reader import RunReader
 from tester.tui.dialogs.repeats_dialog import ExcludeDialog, RepeatsDialog
@@ -34,9 +36,9 @@ ROWS = (
 STORED = Stored("run", Path(), "some recipe", "finished", (), "", ROWS, AXES)
 
 
-def a_run(folder: Path) -> Path:
+def a_run(folder: Path, name: str = "one") -> Path:
     """Write a run of two loads below the folder of runs and return its folder."""
-    run = small_run(folder / "runs" / "one", ([0.90, 0.91, 0.89, 0.90], [0.70, 0.74, 0.72, 0.73]))
+    run = small_run(folder / "runs" / name, ([0.90, 0.91, 0.89, 0.90], [0.70, 0.74, 0.72, 0.73]))
     write_all(run)
     return run
 
@@ -126,6 +128,23 @@ def test_a_repeat_is_left_out_with_a_reason_and_the_table_follows(tmp_path: Path
     with RunReader(run) as reader:
         (word,) = reader.exclusions()
     assert (word.target, word.reason, bool(word.operator)) == ((2, 1, 1), "[/x]", True)
+
+
+@pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets")
+def test_a_repeat_of_the_run_under_way_is_left_out_by_the_screens_own_service(tmp_path: Path) -> None:
+    shown = state().run
+    assert shown is not None
+    run = a_run(tmp_path, shown.name)
+
+    async def act(on: Stage) -> None:
+        await at_repeats(on, run)
+        await on.pilot.press("enter", *"debris", "enter")
+        assert await on.ordered(ExcludeRepeat) == ExcludeRepeat(shown.name, 2, "debris", 1)
+        await on.until(lambda: "made anew at the run's end" in on.text(), "the end of it is said")
+
+    with ExclusiveUse() as use:
+        use.lock_file(run.name, run / RUN_LOCK, run.name, lasting=False)
+        play(act, tmp_path)
 
 
 def test_both_uncertainties_stand_above_the_repeats(tmp_path: Path) -> None:
