@@ -24,6 +24,7 @@ from tester.cli.options import (
 from tester.cli.queue_words import check_lines, queue_lines
 from tester.cli.service_commands import NO_SERVICE, carry_out, take_option, with_client
 from tester.cli.text_table import shown
+from tester.queue.items import MOST_COPIES
 
 if TYPE_CHECKING:
     from tester.queue.view import QueueView
@@ -46,7 +47,7 @@ speed_option = click.option(
 @click.option("--note", "notes", default="", metavar="TEXT", help="Note for the run's record.")
 @click.option("--after", default="done,short", show_default=True, metavar="ENDS",
               help="Ends after which the queue continues: done, short, failed.")  # fmt: skip
-@click.option("--copies", default=1, show_default=True, metavar="N", type=click.IntRange(1, 50),
+@click.option("--copies", default=1, show_default=True, metavar="N", type=click.IntRange(1, MOST_COPIES),
               help="Add it N times; on a simulated rig each has the next seed.")  # fmt: skip
 @click.option("--answer-within", "within", default="", metavar="TIME",
               help="Stop the item once a question has waited so long, e.g. 2 h, with the guard closed.")  # fmt: skip
@@ -91,20 +92,16 @@ ADD_S = 150.0
 
 def _within_s(text: str, unanswered: str) -> float | None:
     """Return the time limit of a question, s; None without one."""
-    from tester.base.units import UnitError, parse
-    from tester.service.commands import LEAST_WAIT_S, MOST_WAIT_S
+    from tester.queue.items import wait_typed
 
     if not text:
         if unanswered == "skip":
             raise click.UsageError("--unanswered skip needs --answer-within: how long does a question wait?")
         return None
     try:
-        within_s = parse(text, "s")
-    except UnitError as error:
+        return wait_typed(text)
+    except ValueError as error:
         raise click.UsageError(f"--answer-within: {error}") from error
-    if not LEAST_WAIT_S <= within_s <= MOST_WAIT_S:
-        raise click.UsageError(f"--answer-within {text}: expected 1 min to 7 days, so that a person can be called")
-    return within_s
 
 
 def _end(word: str) -> Literal["done", "short", "failed"]:

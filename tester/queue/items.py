@@ -5,7 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 from enum import StrEnum
 
+from tester.base.units import UnitError, parse
 from tester.base.words import rough_duration
+
+MOST_COPIES = 50
+"""Most copies of an item that are added at once [A]."""
+LEAST_WAIT_S, MOST_WAIT_S = 60.0, 604_800.0
+"""Limits of a question's time, s [A]: a person can be called and come; no item blocks a rig for more than a week."""
 
 
 class End(StrEnum):
@@ -98,6 +104,17 @@ class Unanswered:
     def words(self) -> str:
         """Return it in words."""
         return f"stopped after {rough_duration(self.within_s)} without an answer"
+
+
+def wait_typed(text: str) -> float:
+    """Return the time for which a question waits, s, of a text such as ``2 h``; raises ValueError."""
+    try:
+        within_s = parse(text, "s")
+    except UnitError as error:
+        raise ValueError(str(error)) from error
+    if not LEAST_WAIT_S <= within_s <= MOST_WAIT_S:
+        raise ValueError(f"expected 1 min to 7 days, so that a person can be called, got {text}")
+    return within_s
 
 
 @dataclass(frozen=True, slots=True)

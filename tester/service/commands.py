@@ -7,6 +7,7 @@ from typing import Annotated, Literal, TypeAlias
 
 from pydantic import Field
 
+from tester.queue.items import LEAST_WAIT_S, MOST_COPIES, MOST_WAIT_S
 from tester.service.message_parts import Name, Note, PathText, RecipeText, Reply, Speed, StrictMessage
 
 VERSION = 2
@@ -195,8 +196,6 @@ class ListRuns(StrictMessage):
 
 Revision = Annotated[int, Field(ge=0)]
 ItemNumber = Annotated[int, Field(ge=1)]
-LEAST_WAIT_S, MOST_WAIT_S = 60.0, 604_800.0
-"""Limits of a question's time, s [A]: a person can be called and come; no item blocks a rig for more than a week."""
 Clock = Annotated[str, Field(pattern=r"^([01]?\d|2[0-3]):[0-5]\d$")]
 
 
@@ -219,7 +218,7 @@ class QueueAdd(StrictMessage):
     operator: Name = ""
     notes: Note = ""
     after: tuple[Literal["done", "short", "failed"], ...] = ("done", "short")
-    copies: Annotated[int, Field(ge=1, le=50)] = 1
+    copies: Annotated[int, Field(ge=1, le=MOST_COPIES)] = 1
     answer_within_s: Annotated[float, Field(ge=LEAST_WAIT_S, le=MOST_WAIT_S, allow_inf_nan=False)] | None = None
     unanswered: Literal["stand", "skip"] = "stand"
     command: Literal["queue_add"] = "queue_add"

@@ -13,6 +13,7 @@ from textual.widgets import DataTable
 from tester.base.words import rough_duration
 from tester.queue.view import ItemView, QueueView
 from tester.service.commands import QueueAdd, QueueDrop, QueueMove, QueueSkip, QueueStand, QueueStart
+from tester.tui.dialogs.queue_dialogs import AddDialog, StartUntilDialog
 from tester.tui.formatting import clean, clock_text
 from tester.tui.host import Keys, View
 from tester.tui.pages.recipes import RecipesView
@@ -25,10 +26,12 @@ Recipes that run one after another, each frozen when it is added. The line above
 waits for. Times are those of 95 % of queues. After a trip, a stop or a restart a person starts the queue again.
 
 n           add the recipe under the cursor of screen Recipes: at real time; a simulated rig answers its own questions.
+o           add it with options: several times; a time after which an item with an unanswered question is stopped.
 [  ]        move the item under the cursor up, down.
 k           skip: pass over it; if it runs, stop it, and the next one begins.
 Delete      drop it.
 s           start the queue.   w  stand: begin no further item.
+u           start it until a time of day: no item begins that may last beyond it.
 y           start it, and let the first item run although something changed since it was added.
 `tester queue check` states until when the queue runs alone.
 """
@@ -37,16 +40,18 @@ y           start it, and let the first item run although something changed sinc
 class QueuePage(View):
     """The queue of the service's rig."""
 
-    KEYS: ClassVar[Keys] = (("n", "Add"), ("[ ]", "Move"), ("k", "Skip"), ("s", "Start"), ("w", "Stand"),
+    KEYS: ClassVar[Keys] = (("n o", "Add"), ("[ ]", "Move"), ("k", "Skip"), ("s u", "Start"), ("w", "Stand"),
                             ("space", "Hold"), ("F1", "Help"), ("q", "Detach"))  # fmt: skip
     HELP: ClassVar[str | None] = HELP
     BINDINGS: ClassVar[list[BindingType]] = [
         Binding("n", "add", "Add", show=False),
+        Binding("o", "options", "Add with options", show=False),
         Binding("left_square_bracket", "shift(-1)", "Up", show=False),
         Binding("right_square_bracket", "shift(1)", "Down", show=False),
         Binding("k", "skip", "Skip", show=False),
         Binding("delete", "drop", "Drop", show=False),
         Binding("s", "start", "Start", show=False),
+        Binding("u", "until", "Start until", show=False),
         Binding("w", "stand", "Stand", show=False),
         Binding("y", "agree", "Agree and start", show=False),
     ]
@@ -95,12 +100,22 @@ class QueuePage(View):
 
     def action_add(self) -> None:
         """Add the recipe that is chosen on the screen of the recipes."""
+        if (found := self._chosen_recipe()) is not None:
+            action, name = found
+            self.host.order(action, f"{name} is added")
+
+    def action_options(self) -> None:
+        """Ask how to add that recipe."""
+        if (found := self._chosen_recipe()) is not None:
+            self.host.push_screen(AddDialog(*found))
+
+    def _chosen_recipe(self) -> tuple[QueueAdd, str] | None:
+        """Return the command that adds the chosen recipe, and its name; if there is none, say so and return None."""
         recipe, state = self.host.query_one(RecipesView).chosen, self.host.scene.state
         if recipe is None or state is None:
             self.host.say("choose a recipe on F2 first")
-            return
-        action = QueueAdd(str(recipe.path), yes=state.simulated)
-        self.host.order(action, f"{clean(recipe.name, 40)} is added")
+            return None
+        return QueueAdd(str(recipe.path), yes=state.simulated), clean(recipe.name, 40)
 
     def action_shift(self, places: int) -> None:
         """Move the item under the cursor up (-1) or down (1)."""
@@ -131,12 +146,20 @@ class QueuePage(View):
         """Start the queue."""
         self.host.order(QueueStart(), "the queue is started")
 
+    def action_until(self) -> None:
+        """Ask until when to start the queue."""
+        self.host.push_screen(StartUntilDialog(self._first_waiting))
+
     def action_agree(self) -> None:
         """Start the queue, and let its first item run although something has changed."""
-        listed = self.queue.listed if self.queue is not None else ()
-        waiting = next((item.id for item in listed if item.state == "waiting"), None)
-        if waiting is not None:
+        if (waiting := self._first_waiting) is not None:
             self.host.order(QueueStart(agree=(waiting,)), f"the queue is started, item {waiting} as the rig is now")
+
+    @property
+    def _first_waiting(self) -> int | None:
+        """Return the number of the first item that waits."""
+        listed = self.queue.listed if self.queue is not None else ()
+        return next((item.id for item in listed if item.state == "waiting"), None)
 
     def action_stand(self) -> None:
         """Begin no further item."""
