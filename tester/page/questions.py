@@ -28,6 +28,7 @@ from tester.page.reception import AskError
 from tester.page.roles import includes
 from tester.page.stored.asked import ASKED, PREPARE, WRITING
 from tester.service.asked_process import NICE
+from tester.store.run_folders import run_folders
 
 WITHIN_S = 120.0
 """Time for writing a download, s [A]: a report of 165 conditions takes 20 s."""
@@ -52,6 +53,9 @@ WRITTEN: Final = {
 }
 """Downloads by the word of the query ``ticket``; both commands take a run and ``--out``."""
 
+MOST_PREPARED: Final = 4
+"""Newest runs that are prepared when the page starts [A]: a night's; a million samples take a second."""
+
 
 class Questions:
     """Answers each question by its name."""
@@ -69,11 +73,13 @@ class Questions:
         return self
 
     def warm(self) -> None:
-        """Start the reading process, which takes a second, before the first question."""
+        """Before the first question, start the reading process, which takes a second, and prepare the newest runs."""
         self._start(self._reading.warm())
+        for folder in [*run_folders(self._runs)][: -MOST_PREPARED - 1 : -1]:
+            self.prepare(folder.name)
 
     def prepare(self, run: str) -> None:
-        """Make what the pictures of a run that has ended need, without waiting."""
+        """Make what the pictures of a run that is over need, without waiting."""
         self._start(self._prepared(run))
 
     def _start(self, work: Coroutine[None, None, None]) -> None:

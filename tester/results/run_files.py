@@ -21,7 +21,7 @@ _LEFT_OUT = (".part", "-wal", "-shm", "-journal", ".lock", PYRAMID)
 """Suffixes of temporary files."""
 
 
-def write_file(path: Path, chunks: Iterable[bytes]) -> None:
+def write_file(path: Path, chunks: Iterable[bytes | memoryview]) -> None:
     """Write ``chunks`` to ``path``, whole or not at all; raises OSError."""
 
     def fill(part: Path) -> None:

@@ -113,10 +113,10 @@ CHARTS = f"document.querySelectorAll('.replay canvas').length >= 4 && ({NOTE} ??
 
 def first_picture(both: Whole, launched: Browser) -> list[Figure]:
     """Measure a run of 1e6 samples: the first picture by a new page, and zooms."""
-    with page_of(both, launched) as page:  # builds the pyramid, once a run
+    with page_of(both, launched) as page:  # the page process prepares the pyramid meanwhile
         bare = float(page.evaluate(BARE))
         made = timed(page, opened(page, "replay"), CHARTS)
-        print(f"     the first picture of a run without a pyramid: {made:.0f} ms (a bare loop: {bare:.0f} ms)")
+        print(f"     the first picture by the first page: {made:.0f} ms (a bare loop: {bare:.0f} ms)")
     firsts: list[float] = []
     zooms: list[float] = []
     violations: list[str] = []

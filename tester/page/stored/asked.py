@@ -15,12 +15,14 @@ from tester.page.front import in_one_line
 from tester.page.stored.moments import moment_page
 from tester.page.stored.overlays import MOST as MOST_LAID_OVER
 from tester.page.stored.overlays import overlay_page
+from tester.page.stored.pyramid import prepare
 from tester.page.stored.run_cache import QuestionError, RunCache
 from tester.page.stored.run_pages import condition_page, run_page
 from tester.results.catalogue import open_catalogue
 from tester.results.catalogue.entries import RunEntry, WantedRuns, entry_json, refresh
 from tester.results.exclude import Word, record_note, record_word
 from tester.service.commands import Name, Note, StrictMessage
+from tester.store.run_folders import under_way
 from tester.store.run_reader import RunReader
 
 if TYPE_CHECKING:
@@ -162,8 +164,10 @@ def _packed(values: NDArray[Any], form: str) -> str:
 
 
 def _prepare(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Any]:
-    with RunReader(cache.folder(asked.run)) as reader:
-        cache.pyramid(reader)
+    folder = cache.folder(asked.run)
+    if under_way(folder) is None:
+        with RunReader(folder) as reader:
+            prepare(reader)
     return {}
 
 
@@ -213,7 +217,7 @@ ASKED: Final[Mapping[str, Asked]] = {
 }
 """The questions, each with its keys and the function that  answers it."""
 PREPARE: Final = "prepare"
-"""Asked by the page process itself once a run has ended, so that its first picture need not wait for the pyramid."""
+"""Asked by the page process itself, so that the first picture of a run need not wait for its pyramid."""
 WRITING: Final = ("exclude", "note")
 """Those that write on record: they need the role control."""
 

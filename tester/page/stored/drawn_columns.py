@@ -59,20 +59,32 @@ def drawn_columns(quantities: Quantities) -> tuple[DrawnColumn, ...]:
     return tuple({column.key: column for column in reversed(found)}.values())[::-1]
 
 
-def drawn(
-    columns: Sequence[DrawnColumn], samples: Samples, quantities: Quantities, conditions: Sequence[StoredCondition]
-) -> NDArray[np.float64]:
-    """Return the columns of some samples, shape (columns, samples), in the units for people; NaN for no value."""
-    count = len(samples[TIME])
-    table = np.full((len(columns), count), np.nan)
-    for place, column in enumerate(columns):
-        if column.recorded:
-            table[place] = samples[column.recorded] * column.channel.scale
-        elif column.axis:
-            table[place] = _axis_values(column.axis, samples[TIME], conditions)
-        elif not column.channel.source:
-            table[place] = _friction(quantities, samples)
-    return table
+class ColumnValues:
+    """Makes the columns of a run from its samples, in the units for people; NaN for no value."""
+
+    def __init__(
+        self, columns: Sequence[DrawnColumn], quantities: Quantities, conditions: Sequence[StoredCondition]
+    ) -> None:
+        """``conditions``: those of the run, whose set points are drawn."""
+        self.columns = columns
+        self._quantities = quantities
+        self._spans = {column.axis: _spans(column.axis, conditions) for column in columns if column.axis}
+
+    def values(self, samples: Samples) -> NDArray[np.float64]:
+        """Return the columns of some samples, shape (columns, samples)."""
+        table = np.empty((len(self.columns), len(samples[TIME])))
+        for place, column in enumerate(self.columns):
+            recorded = column.recorded
+            table[place] = samples[recorded] * column.channel.scale if recorded else self.computed(column, samples)
+        return table
+
+    def computed(self, column: DrawnColumn, samples: Samples) -> NDArray[np.float64]:
+        """Return a column that is not recorded."""
+        if column.axis:
+            return _axis_values(self._spans[column.axis], samples[TIME])
+        if not column.channel.source:
+            return _friction(self._quantities, samples)
+        return np.full(len(samples[TIME]), np.nan)
 
 
 def _friction(quantities: Quantities, samples: Samples) -> NDArray[np.float64]:
@@ -84,14 +96,21 @@ def _friction(quantities: Quantities, samples: Samples) -> NDArray[np.float64]:
     return np.divide(force, normal, out=np.full(len(normal), np.nan), where=touching)
 
 
-def _axis_values(
-    axis: str, at_s: NDArray[np.float64], conditions: Sequence[StoredCondition]
-) -> NDArray[np.float64]:
+def _spans(axis: str, conditions: Sequence[StoredCondition]) -> NDArray[np.float64]:
+    """Return begin, end (rig seconds) and set point of the conditions that have this axis, shape (conditions, 3)."""
+    found = [
+        (one.started_s, one.ended_s if np.isfinite(one.ended_s) else np.inf, held.axes[axis].number(held))
+        for one in conditions
+        if axis in (held := one.info.setpoint).axes.places and not held.axes[axis].textual
+    ]
+    return np.array(found, dtype=np.float64).reshape(-1, 3)
+
+
+def _axis_values(spans: NDArray[np.float64], at_s: NDArray[np.float64]) -> NDArray[np.float64]:
     """Return the set point of the condition under way at each moment; NaN between conditions."""
     found = np.full(len(at_s), np.nan)
-    for condition in conditions:
-        end_s = condition.ended_s if np.isfinite(condition.ended_s) else np.inf
-        setpoint = condition.info.setpoint
-        if axis in setpoint.axes.places and not setpoint.axes[axis].textual:
-            found[(at_s >= condition.started_s) & (at_s < end_s)] = setpoint.axes[axis].number(setpoint)
+    if len(at_s):
+        near = (spans[:, 0] <= np.max(at_s)) & (spans[:, 1] > np.min(at_s))  # of 165 conditions, one or two
+        for begin_s, end_s, value in spans[near]:
+            found[(at_s >= begin_s) & (at_s < end_s)] = value
     return found

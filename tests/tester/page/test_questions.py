@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import asyncio
 import os
 from dataclasses import replace
 from pathlib import Path
@@ -9,6 +10,8 @@ from typing import Any
 
 import pytest
 
+from tester.page.answers import Tickets
+from tester.page.pairing import Pairings
 from tester.page.questions import Questions
 from tests.tester.page.stage import PageStage
 from tests.tester.page.test_reception import play
@@ -95,6 +98,20 @@ def test_a_run_that_ends_is_prepared_for_its_first_picture(
         assert asked == ["first"]
 
     play(tmp_path, story)
+
+
+def test_the_newest_runs_are_prepared_when_the_page_starts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[str] = []
+    monkeypatch.setattr(Questions, "prepare", lambda _self, run: asked.append(run))
+    for day in range(1, 7):
+        small_run(tmp_path / f"2024-02-0{day}-run", FOUR, rows=0)
+
+    async def story() -> None:
+        async with Questions(tmp_path, Pairings("control"), Tickets()) as questions:
+            questions.warm()
+
+    asyncio.run(story())
+    assert asked == [f"2024-02-0{day}-run" for day in (6, 5, 4, 3)]
 
 
 def test_pages_see_who_is_paired(tmp_path: Path) -> None:

@@ -4,15 +4,21 @@ from __future__ import annotations
 
 import shutil
 import sqlite3
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
+from threading import Event
 
 import numpy as np
 import pytest
 
+from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.page.stored import pyramid
-from tester.page.stored.drawn_columns import drawn, drawn_columns
+from tester.page.stored.asked import PREPARE, answer
+from tester.page.stored.drawn_columns import ColumnValues, drawn_columns
 from tester.page.stored.pyramid import FACTOR, Buckets, Pyramid, pyramid_of
+from tester.page.stored.run_cache import RunCache
+from tester.results.run_files import write_file
 from tester.results.verify import verify
 from tester.store.run_reader import RunReader
 
@@ -36,7 +42,8 @@ def window(folder: Path, of: Pyramid, from_s: float, to_s: float, points: int) -
 def every_sample(folder: Path) -> tuple[np.ndarray, np.ndarray]:
     with RunReader(folder) as reader:
         samples, quantities = reader.samples(), reader.quantities()
-        return samples["time_s"], drawn(drawn_columns(quantities), samples, quantities, reader.conditions())
+        of_columns = ColumnValues(drawn_columns(quantities), quantities, reader.conditions())
+        return samples["time_s"], of_columns.values(samples)
 
 
 @pytest.mark.parametrize("points", [1, 7, 50, 400, 8192])
@@ -72,6 +79,39 @@ def test_a_window_without_samples_is_empty(run: Path) -> None:
     assert found.low.shape == (len(made(run).columns), len(found.t_s)) and len(found.t_s) <= 1
 
 
+def test_a_bucket_of_the_first_level_has_eight_samples_of_its_block(run: Path) -> None:
+    with RunReader(run) as reader:
+        counts = [block.rows for block in reader.sample_blocks()]
+    t_s, values = every_sample(run)
+    firsts = [sum(counts[:at]) + of for at, count in enumerate(counts) for of in range(0, count, FACTOR)]
+    ends = [*firsts[1:], len(t_s)]
+    found = made(run).first
+    assert np.array_equal(found.t_s, t_s[firsts])
+    for at in range(0, len(firsts), 37):
+        samples = values[:, firsts[at] : ends[at]].astype(np.float32)
+        assert np.array_equal(found.low[:, at], np.fmin.reduce(samples, axis=1), equal_nan=True)
+        assert np.array_equal(found.high[:, at], np.fmax.reduce(samples, axis=1), equal_nan=True)
+
+
+def test_a_column_whose_scale_is_negative_has_its_ends_the_right_way_round(run: Path) -> None:
+    with RunReader(run) as reader:
+        (one,) = (column for column in drawn_columns(reader.quantities()) if column.key == "load_n")
+        turned = replace(one, channel=replace(one.channel, scale=-1.0))
+        rows = [*reader.rows("SELECT * FROM sample_block ORDER BY id")]
+        plain, found = (pyramid._Blocks(reader, (column,)).eights(rows) for column in (one, turned))
+    assert np.array_equal(found.low, -plain.high) and np.array_equal(found.high, -plain.low)
+
+
+def test_a_set_point_is_that_of_the_condition_under_way(run: Path) -> None:
+    with RunReader(run) as reader:
+        columns, conditions = drawn_columns(reader.quantities()), reader.conditions()
+        of_columns = ColumnValues(columns, reader.quantities(), conditions)
+        moments = np.array([-1.0, *(t for one in conditions for t in (one.started_s, one.ended_s))])
+        samples = dict.fromkeys(reader.quantities().names, np.zeros(len(moments))) | {"time_s": moments}
+    slip = of_columns.values(samples)[[column.key for column in columns].index("slip_setpoint_mm_s")]
+    assert np.array_equal(slip, [np.nan, 200.0, np.nan, 300.0, np.nan], equal_nan=True)
+
+
 def test_levels_shrink_by_eight(run: Path) -> None:
     sizes = [len(level.t_s) for level in made(run).levels]
     assert all(-(-a // FACTOR) == b for a, b in pairwise(sizes)) and sizes[-1] <= FACTOR
@@ -86,6 +126,29 @@ def test_the_file_beside_the_record_is_read_again_and_is_no_part_of_the_run(
     monkeypatch.setattr(pyramid, "_made", lambda *_: pytest.fail("made again"))
     again = made(own)
     assert np.array_equal(first.first.low, again.first.low, equal_nan=True)
+
+
+def test_a_run_that_is_over_is_prepared_where_that_saves_time(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def prepared() -> bool:
+        answer(RunCache(own.parent), PREPARE, {"run": own.name}, "")
+        return (own / "samples.pyramid").is_file()
+
+    assert not prepared()  # it is short
+    monkeypatch.setattr(pyramid, "AT_LEAST", 1)
+    with ExclusiveUse() as use:
+        use.lock_file(own.name, own / RUN_LOCK, own.name, lasting=False)
+        assert not prepared()
+    assert prepared()
+
+
+def test_an_answer_does_not_wait_for_the_file(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(pyramid, "AT_LEAST", 1)
+    written = Event()
+    monkeypatch.setattr(pyramid, "write_file", lambda *given: (written.wait(20), write_file(*given)))
+    with RunReader(own) as reader:
+        assert RunCache(own.parent).pyramid(reader).kept
+    assert not (own / "samples.pyramid").exists()
+    written.set()
 
 
 @pytest.mark.parametrize("damage", [b"", b"\x93NUMPY", b"x" * 100])
