@@ -81,7 +81,8 @@ class PageStage:
 
     @property
     def origin(self) -> str:
-        return f"http://127.0.0.1:{self.port}"
+        scheme = "https" if "certificate" in self._options else "http"
+        return f"{scheme}://{self._options.get('lan', '127.0.0.1')}:{self.port}"
 
     async def __aenter__(self) -> PageStage:
         await self._stack.enter_async_context(self.fake)

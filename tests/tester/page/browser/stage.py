@@ -7,6 +7,7 @@ is used: an installed one, found by name; the driver brings none.
 from __future__ import annotations
 
 import asyncio
+import os
 import shutil
 import threading
 from collections.abc import Callable, Coroutine, Iterator
@@ -53,13 +54,16 @@ def chromium() -> str:
 
 
 @contextmanager
-def browser() -> Iterator[Browser]:
-    """Launch the browser."""
+def browser(home: Path | None = None) -> Iterator[Browser]:
+    """Launch the browser. ``home``: the user's folder, None for the present user's."""
     path = chromium()
     from playwright.sync_api import sync_playwright
 
+    environment: dict[str, str | float | bool] = {**os.environ}
+    if home is not None:
+        environment["HOME"] = str(home)
     with sync_playwright() as driver:
-        launched = driver.chromium.launch(executable_path=path, args=list(FLAGS))
+        launched = driver.chromium.launch(executable_path=path, args=list(FLAGS), env=environment)
         yield launched
         launched.close()
 
@@ -181,8 +185,10 @@ class Front:
 
 
 @contextmanager
-def front(folder: Path, *, stored: bool = True) -> Iterator[Front]:
-    """Serve the page. ``stored``: the stored runs are told by a test, else they are those of the folder."""
+def front(folder: Path, *, stored: bool = True, **options: Any) -> Iterator[Front]:
+    """Serve the page. ``stored``: the stored runs are told by a test, else they are those of the folder. ``options``:
+    of the page process.
+    """
     played = Played()
     patch = pytest.MonkeyPatch()
 
@@ -194,7 +200,7 @@ def front(folder: Path, *, stored: bool = True) -> Iterator[Front]:
     loop = asyncio.new_event_loop()
     thread = threading.Thread(target=loop.run_forever, daemon=True)
     thread.start()
-    stage = PageStage(folder)
+    stage = PageStage(folder, **options)
 
     async def begin() -> None:
         await stage.__aenter__()
