@@ -28,7 +28,7 @@ from tester.page.reception import AskError
 from tester.page.roles import includes
 from tester.page.stored.asked import ASKED, PREPARE, WRITING
 from tester.service.asked_process import NICE
-from tester.store.run_folders import run_folders
+from tester.store.run_folders import newest_run
 
 WITHIN_S = 120.0
 """Time for writing a download, s [A]: a report of 165 conditions takes 20 s."""
@@ -53,9 +53,6 @@ WRITTEN: Final = {
 }
 """Downloads by the word of the query ``ticket``; both commands take a run and ``--out``."""
 
-MOST_PREPARED: Final = 4
-"""Newest runs that are prepared when the page starts [A]: a night's; a million samples take a second."""
-
 
 class Questions:
     """Answers each question by its name."""
@@ -73,23 +70,25 @@ class Questions:
         return self
 
     def warm(self) -> None:
-        """Before the first question, start the reading process, which takes a second, and prepare the newest runs."""
-        self._start(self._reading.warm())
-        for folder in [*run_folders(self._runs)][: -MOST_PREPARED - 1 : -1]:
-            self.prepare(folder.name)
+        """Before the first question, start the reading process, which takes a second, and prepare the newest run there.
+
+        A question about that run then finds it in memory; in another process, both would make it at the same time.
+        """
+        newest = newest_run(self._runs)
+        self._start(self._prepared(self._reading, newest.name) if newest is not None else self._reading.warm())
 
     def prepare(self, run: str) -> None:
         """Make what the pictures of a run that is over need, without waiting."""
-        self._start(self._prepared(run))
+        self._start(self._prepared(self._writing, run))
 
     def _start(self, work: Coroutine[None, None, None]) -> None:
         task = asyncio.create_task(work)
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    async def _prepared(self, run: str) -> None:
+    async def _prepared(self, worker: DataWorker, run: str) -> None:
         with suppress(AskError, TimeoutError):  # the first picture then makes it
-            await self._writing.answer(PREPARE, {"run": run}, "")
+            await worker.answer(PREPARE, {"run": run}, "")
 
     async def __aexit__(self, *_: object) -> None:
         """End the processes."""

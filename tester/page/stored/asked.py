@@ -15,7 +15,6 @@ from tester.page.front import in_one_line
 from tester.page.stored.moments import moment_page
 from tester.page.stored.overlays import MOST as MOST_LAID_OVER
 from tester.page.stored.overlays import overlay_page
-from tester.page.stored.pyramid import prepare
 from tester.page.stored.run_cache import QuestionError, RunCache
 from tester.page.stored.run_pages import condition_page, run_page
 from tester.results.catalogue import open_catalogue
@@ -167,7 +166,7 @@ def _prepare(cache: RunCache, asked: AskRun, _by: str) -> dict[str, Any]:
     folder = cache.folder(asked.run)
     if under_way(folder) is None:
         with RunReader(folder) as reader:
-            prepare(reader)
+            cache.pyramid(reader)
     return {}
 
 

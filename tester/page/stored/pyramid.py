@@ -190,12 +190,6 @@ def pyramid_of(
     return made
 
 
-def prepare(reader: RunReader) -> None:
-    """Write the file of a run that is over, where that saves time and it is missing. Raises StoreError."""
-    if state_of(reader).rows >= AT_LEAST:
-        pyramid_of(reader, None, lasting=True)
-
-
 def _made(reader: RunReader, columns: Sequence[DrawnColumn], after: int) -> Buckets:
     """Return the buckets of the blocks after one, by its id."""
     rows = reader.rows("SELECT id, rows, data FROM sample_block WHERE id > ? ORDER BY id", (after,))

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 from tester.page.answers import Tickets
+from tester.page.data_worker import DataWorker
 from tester.page.pairing import Pairings
 from tester.page.questions import Questions
 from tests.tester.page.stage import PageStage
@@ -100,18 +101,26 @@ def test_a_run_that_ends_is_prepared_for_its_first_picture(
     play(tmp_path, story)
 
 
-def test_the_newest_runs_are_prepared_when_the_page_starts(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    asked: list[str] = []
-    monkeypatch.setattr(Questions, "prepare", lambda _self, run: asked.append(run))
-    for day in range(1, 7):
+def test_the_newest_run_is_prepared_by_the_reading_process_when_the_page_starts(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    asked: list[tuple[str, object]] = []
+
+    async def played(_self: DataWorker, query: str, keys: dict[str, Any], _by: str) -> bytes:
+        asked.append((query, keys))
+        return b"{}"
+
+    monkeypatch.setattr(DataWorker, "answer", played)
+    for day in (1, 2, 3):
         small_run(tmp_path / f"2024-02-0{day}-run", FOUR, rows=0)
 
     async def story() -> None:
         async with Questions(tmp_path, Pairings("control"), Tickets()) as questions:
             questions.warm()
+            await asyncio.sleep(0)
 
     asyncio.run(story())
-    assert asked == [f"2024-02-0{day}-run" for day in (6, 5, 4, 3)]
+    assert asked == [("prepare", {"run": "2024-02-03-run"})]
 
 
 def test_pages_see_who_is_paired(tmp_path: Path) -> None:

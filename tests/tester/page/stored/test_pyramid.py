@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 from tester.base.lock import RUN_LOCK, ExclusiveUse
-from tester.page.stored import pyramid
+from tester.page.stored import pyramid, run_cache
 from tester.page.stored.asked import PREPARE, answer
 from tester.page.stored.drawn_columns import ColumnValues, drawn_columns
 from tester.page.stored.pyramid import FACTOR, Buckets, Pyramid, pyramid_of
@@ -128,17 +128,15 @@ def test_the_file_beside_the_record_is_read_again_and_is_no_part_of_the_run(
     assert np.array_equal(first.first.low, again.first.low, equal_nan=True)
 
 
-def test_a_run_that_is_over_is_prepared_where_that_saves_time(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    def prepared() -> bool:
-        answer(RunCache(own.parent), PREPARE, {"run": own.name}, "")
-        return (own / "samples.pyramid").is_file()
-
-    assert not prepared()  # it is short
-    monkeypatch.setattr(pyramid, "AT_LEAST", 1)
+def test_a_run_is_prepared_once_it_is_over(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    kept = Event()
+    monkeypatch.setattr(run_cache, "keep", lambda *_: kept.set())
     with ExclusiveUse() as use:
         use.lock_file(own.name, own / RUN_LOCK, own.name, lasting=False)
-        assert not prepared()
-    assert prepared()
+        answer(RunCache(own.parent), PREPARE, {"run": own.name}, "")
+        assert not kept.is_set()
+    answer(RunCache(own.parent), PREPARE, {"run": own.name}, "")
+    assert kept.wait(20)
 
 
 def test_an_answer_does_not_wait_for_the_file(own: Path, monkeypatch: pytest.MonkeyPatch) -> None:
