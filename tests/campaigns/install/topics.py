@@ -97,6 +97,7 @@ def whole_test_command(work: Path) -> Iterator[Figure]:
 
 def _pass_before_s(work: Path) -> float:
     """Return what `python -c pass` takes just before the command, s: a machine's pace drifts within minutes."""
+    work.mkdir(parents=True, exist_ok=True)
     must(carry_out("python3 -m venv --without-pip bare", work))
     return pass_s(work / "bare" / "bin" / "python")
 

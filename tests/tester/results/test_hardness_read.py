@@ -71,6 +71,7 @@ def test_show_has_the_hardness(run: Path, capsys: pytest.CaptureFixture[str]) ->
 
 
 def test_the_report_has_it_beside_the_compound_s(run: Path, tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib", reason="needs the extra `report`")
     out = tmp_path / "report.html"
     assert invoke(["report", str(run), "--out", str(out)]) == 0
     text = out.read_text(encoding="utf-8")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from tester.machine.prompts import Prompt, Prompts
+from tester.machine.prompts import DONE, Prompt, Prompts
 from tester.results.run_results import results_of
 from tester.run.session import Session
 from tester.run.session_options import SessionOptions
@@ -53,10 +53,12 @@ def resumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
     home = tmp_path_factory.mktemp("resumed")
     ask = Prompts.ask
 
-    def dying(self: Prompts, now: float, text: str, *, near: bool = True, unit: str = "") -> Prompt:
+    def dying(
+        self: Prompts, now: float, text: str, *, near: bool = True, unit: str = "", by_itself: str = DONE
+    ) -> Prompt:
         if B in text:
             raise StoppedError
-        return ask(self, now, text, near=near, unit=unit)
+        return ask(self, now, text, near=near, unit=unit, by_itself=by_itself)
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(Prompts, "ask", dying)
