@@ -86,8 +86,18 @@ class Law:
     """Yields, from parameters and the measured values of conditions, why the law does not hold at some of them."""
     constants: Mapping[str, float] = field(default_factory=dict[str, float])
     """Further figures of the formula, which no fit changes, by name in the law's units."""
+    improper: Callable[[Sequence[float]], str] | None = None
+    """Returns why parameters are not the law's, "" where they are: a search may end at a bell upside down."""
+    starts: tuple[Mapping[str, float], ...] = ()
+    """Further starts of the search: changes of the parameters' own."""
     leaves_out: Callable[[tuple[float, ...]], str] | None = None
     """Returns why the law has no value at the nominal values of a condition, "" where it has one."""
+
+    def begins(self) -> Iterator[tuple[float, ...]]:
+        """Yield the sets of parameters at which a search begins."""
+        yield from self.published.values()
+        for changes in ({}, *self.starts):
+            yield tuple(changes.get(parameter.name, parameter.start) for parameter in self.parameters)
 
     @property
     def names(self) -> tuple[str, ...]:

@@ -217,7 +217,7 @@ def _searched(
     """Return the problem with its weights, and the best fit."""
     problem = FitProblem(law, points, held)
     refuse(law, group, points, held)
-    return problem, solve(problem, [*law.published.values(), [parameter.start for parameter in law.parameters]])
+    return problem, solve(problem, law.begins())
 
 
 def _condition_number(group: str, problem: FitProblem, fitted: Array) -> float:

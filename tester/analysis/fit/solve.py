@@ -6,7 +6,7 @@ same sum: soft L1 of the weighted residuals, ``2 f^2 (sqrt(1 + (r / f)^2) - 1)``
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from math import log, sqrt
 from typing import Any, Final, cast
@@ -173,14 +173,15 @@ def _search() -> Any:
     return cast("Any", least_squares)
 
 
-def solve(problem: FitProblem, starts: Sequence[Sequence[float]]) -> Array:
+def solve(problem: FitProblem, starts: Iterable[Sequence[float]]) -> Array:
     """Return the best fit, ``z`` of shape (q,), of searches from several sets of a law's parameters.
 
-    Raises MissingExtraError without SciPy, FitError where no search converges.
+    Raises MissingExtraError without SciPy, FitError where no search converges to parameters that are the law's.
     """
     search = _search()
     prior = np.zeros(problem.priors)
     best: Any = None
+    reason = "the data leave its parameters open"
     for start in starts:
         solution = search(
             problem.residuals,
@@ -195,10 +196,16 @@ def solve(problem: FitProblem, starts: Sequence[Sequence[float]]) -> Array:
             gtol=1e-12,
             max_nfev=MOST_EVALUATIONS,
         )
-        if solution.success and (best is None or solution.cost < best.cost):
+        if not solution.success or (best is not None and solution.cost >= best.cost):
+            continue
+        found = cast("Array", problem.natural(solution.x))
+        improper = problem.law.improper(found.tolist()) if problem.law.improper is not None else ""
+        if improper:
+            reason = improper
+        else:
             best = solution
     if best is None:
-        raise FitError(f"the search for the law {problem.law.name} does not end: the data leave its parameters open")
+        raise FitError(f"the search for the law {problem.law.name} does not end: {reason}")
     return np.asarray(best.x, dtype=np.float64)
 
 

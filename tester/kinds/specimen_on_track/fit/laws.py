@@ -68,6 +68,12 @@ def _beyond_shift(parameters: Sequence[float], measured: Sequence[tuple[float, .
         )
 
 
+def _upside_down(parameters: Sequence[float]) -> str:
+    """Return why a bell's heights are not one's, "" where they are."""
+    mu_0, mu_max = parameters[0], parameters[1]
+    return "" if mu_0 <= mu_max else f"its maximum ({mu_max:.3g}) is below what is far from it ({mu_0:.3g})"
+
+
 WLF_BELL: Final = Law(
     name="wlf_bell",
     title="a bell over the reduced speed",
@@ -84,6 +90,8 @@ WLF_BELL: Final = Law(
     value=_bell,
     published={},
     beyond=_beyond_shift,
+    improper=_upside_down,
+    starts=({"v_ref": 1e-6}, {"v_ref": 1.0}),
 )
 POWER: Final = Law(
     name="power",

@@ -75,6 +75,26 @@ def fitted(law: Law, own: Sequence[FitPoint], count: int = 99) -> GroupFit:
     return fit_group(PART.bound(law, GROUP, "", {}), GROUP, own, PART.cells, count=count)
 
 
+@pytest.mark.parametrize("seed", range(3))
+def test_a_bell_is_found_from_one_of_its_flanks(seed: int) -> None:
+    bell = WlfBell(WlfBellParameters(mu_0=0.08, mu_max=0.17, width=4.0, v_ref=1e-10, t_ref=-15.0))
+    own = points(bell.mu, (1e-5, 1e-4, 1e-3, 1e-2), (0.0, 10.0, 20.0, 30.0, 40.0, 50.0), 0.01, seed)
+    mu_0, mu_max, width, _, t_ref = fitted(WLF_BELL, own).parameters
+    assert (mu_0, mu_max) == (pytest.approx(0.08, abs=0.005), pytest.approx(0.17, abs=0.02))
+    assert (width, t_ref) == (pytest.approx(4.0, abs=0.5), pytest.approx(-15.0, abs=5.0))
+
+
+def test_a_bell_upside_down_is_no_fit() -> None:
+    assert WLF_BELL.improper is not None and WLF_BELL.improper((0.2, 0.5, 3.0, 1e-3, 0.0)) == ""
+    assert "maximum (0.2) is below" in WLF_BELL.improper((0.5, 0.2, 3.0, 1e-3, 0.0))
+
+
+def test_a_fit_without_a_law_s_own_parameters_is_refused() -> None:
+    own = points(WlfBell(WlfBellParameters()).mu)
+    with pytest.raises(FitError, match="does not end: never its own"):
+        fitted(replace(WLF_BELL, improper=lambda parameters: "never its own"), own)
+
+
 @pytest.mark.parametrize(
     ("law", "parameters", "mu"),
     [
