@@ -92,7 +92,8 @@ def drawn(seed: int) -> Stranger:
             lines.append(f"{temperature_c:.2f},{frequency_hz:g},{storage:.6g},{max(loss, 1e-3 * storage):.6g}")
     hurst, q0 = draw.uniform(0.7, 0.95), 10.0 ** draw.uniform(3.3, 4.3)
     q1 = q0 * 10.0 ** draw.uniform(1.0, 1.8)
-    slope = draw.uniform(0.7, 1.3)  # rms, of which <slope^2> = 2 pi int q^3 C dq
+    # rms, of which <slope^2> = 2 pi int q^3 C dq: rough enough that dry friction shows the contact (5 % of the load).
+    slope = draw.uniform(0.9, 1.5)
     span = (q1 / q0) ** (2.0 - 2.0 * hurst) - 1.0
     c0 = slope**2 * (2.0 - 2.0 * hurst) / (2.0 * pi * q0**4 * span)
     spectrum = f"{{C0: {c0:.6g} m4, q0: {q0:.6g} 1/m, q1: {q1:.6g} 1/m, H: {hurst:.4g}}}"
