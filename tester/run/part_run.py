@@ -205,6 +205,7 @@ def _execute(
         ticked, lives = _with_faults(run, world, faults) if world is not None and faults else (run, world)
         may_leap = job.leaps and world is not None and not faults and log is None and job.lapse is None
         leaps = Leaps(run.engine, world) if may_leap and world is not None else None
+        _load_numpy()
         with collector_at_rest():  # before the first tick: STOP must not wait for a collection
             watch.begun(run)
             with left_safe(run):
@@ -223,6 +224,12 @@ def _execute(
             ports.close()
         if log is not None:
             log.close()
+
+
+def _load_numpy() -> None:
+    """Load what NumPy would load at the end of the first repeat: a scan would wait for 20 ms."""
+    import numpy.fft
+    import numpy.ma  # noqa: F401
 
 
 def _log_folder(folder: Path, work: Work, part: Part) -> Path:
