@@ -5,7 +5,8 @@ drawn moment one of them gets SIGKILL; then the run is resumed on the same machi
 Compared with the run in one process with the same seed: each condition's coefficient, within both expanded
 uncertainties of this specimen (95 %) in quadrature; the repeats from before the kill, which must be as they were.
 `--sample` rehearses a disc whose run is killed, beside a block whose machine is killed; `--fast` longer recipes of both
-over TCP, with the clocks of machine and run 20 times as fast. Exit code 1 if a figure misses.
+over TCP, with the clocks of machine and run 5 times as fast (drives' data may then be 5 ms old). Exit code 1 if a
+figure misses.
 """
 
 from __future__ import annotations
@@ -174,7 +175,7 @@ def main(arguments: list[str] | None = None) -> int:
     """Rehearse; 1 where a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.rehearsal", description="Machines on wires.")
     parser.add_argument("--sample", action="store_true", help="two kinds beside each other, each killed once")
-    parser.add_argument("--fast", action="store_true", help="longer recipes, with clocks 20 times as fast")
+    parser.add_argument("--fast", action="store_true", help="longer recipes, with clocks 5 times as fast")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of the machines and the drawn moments (1)")
     parser.add_argument("--keep", type=Path, metavar="DIR", help="keep runs in this new folder")
     read = parser.parse_args(arguments)
