@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable, Sequence
 from functools import partial
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -228,8 +229,8 @@ def _execute(
 
 def _load_numpy() -> None:
     """Load what NumPy would load at the end of the first repeat: a scan would wait for 20 ms."""
-    import numpy.fft
-    import numpy.ma  # noqa: F401
+    for module in ("numpy.fft", "numpy.ma"):
+        import_module(module)
 
 
 def _log_folder(folder: Path, work: Work, part: Part) -> Path:

@@ -96,8 +96,10 @@ class Law:
     def begins(self) -> Iterator[tuple[float, ...]]:
         """Yield the sets of parameters at which a search begins."""
         yield from self.published.values()
-        for changes in ({}, *self.starts):
-            yield tuple(changes.get(parameter.name, parameter.start) for parameter in self.parameters)
+        own = {parameter.name: parameter.start for parameter in self.parameters}
+        yield tuple(own.values())
+        for changes in self.starts:
+            yield tuple({**own, **changes}.values())
 
     @property
     def names(self) -> tuple[str, ...]:

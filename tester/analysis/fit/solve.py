@@ -198,7 +198,7 @@ def solve(problem: FitProblem, starts: Iterable[Sequence[float]]) -> Array:
         )
         if not solution.success or (best is not None and solution.cost >= best.cost):
             continue
-        found = cast("Array", problem.natural(solution.x))
+        found = problem.natural(solution.x)
         improper = problem.law.improper(found.tolist()) if problem.law.improper is not None else ""
         if improper:
             reason = improper
