@@ -30,7 +30,6 @@ from tester.base import clock
 from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
 from tests.campaigns.rehearsal.machines import BLOCK, DISC, EVERY, Machine, Rehearsed, fast
 
-LONGEST_S = 3600.0
 TRIES = 3
 UNBROKEN, RUN, MACHINE = "unbroken", "run killed", "machine killed"
 Repeat = tuple[int, int, float]
@@ -70,11 +69,11 @@ def rehearse(scene: Scene, folder: Path, seed: int) -> list[Figure]:
     """Live a scene and return its figures."""
     machine = Machine(folder, scene.of, scene.door, seed)
     try:
-        here = ended(machine.here(folder / "here"), folder / "here.err")
+        here = ended(machine.here(folder / "here"), folder / "here.err", scene.of.longest_s)
         machine.start()
         run = machine.run()
         if scene.killed == UNBROKEN:
-            run.wait(LONGEST_S)
+            run.wait(scene.of.longest_s)
             (left,) = (folder / "runs").iterdir()
             return list(compare(scene, here, left if run.returncode == 0 else resumed(machine, left), repeats(left)))
         until_s = clock.monotonic() + scene.share * rig_seconds(here)
@@ -86,7 +85,7 @@ def rehearse(scene: Scene, folder: Path, seed: int) -> list[Figure]:
             run.kill()
         else:
             machine.kill()
-        run.wait(LONGEST_S)
+        run.wait(scene.of.longest_s)
         (left,) = (folder / "runs").iterdir()
         before = repeats(left)
         if scene.killed == MACHINE:
@@ -110,7 +109,7 @@ def resumed(machine: Machine, run: Path) -> Path:
     errors = machine.folder / "run.err"
     for left in reversed(range(TRIES)):
         try:
-            return ended(machine.resume(run), errors)
+            return ended(machine.resume(run), errors, machine.of.longest_s)
         except ValueError:
             if not left:
                 raise
@@ -133,9 +132,9 @@ def compare(scene: Scene, here: Path, there: Path, before: Sequence[Repeat]) -> 
     yield equal(f"{scene.name}: repeats from before, as they were", kept, f"{len(before)} of {len(before)}")
 
 
-def ended(process: subprocess.Popen[str], errors: Path) -> Path:
+def ended(process: subprocess.Popen[str], errors: Path, longest_s: float) -> Path:
     """Wait for a run and return its folder; raises ValueError with what it wrote if it did not go through."""
-    out, _ = process.communicate(timeout=LONGEST_S)
+    out, _ = process.communicate(timeout=longest_s)
     if process.returncode != 0:
         raise ValueError(f"exit {process.returncode}: {words(errors)}")
     return Path(out.splitlines()[-1])

@@ -31,6 +31,8 @@ class Rehearsed:
     by_hand: bool = False
     example: bool = False
     times: float = 1.0
+    longest_s: float = 600.0
+    """A run that takes longer is given up, s."""
     """Whether its kind is that of the example package; its rig file is then written beside the recipe."""
 
 
@@ -82,8 +84,10 @@ def fast() -> tuple[Rehearsed, ...]:
     recipe["grids"] = [clean | {"surface": "silicon carbide", "temperature": [f"{c} degC" for c in (-10, 10, 30, 50)]}]
     text = yaml.safe_dump(recipe, sort_keys=False)
     return (
-        Rehearsed("pin-on-disc, whole, 5 times as fast", "pin-on-disc", disc, by_hand=True, times=5.0),
-        Rehearsed("grosch at four temperatures, 5 times as fast", "grosch", text, times=5.0),
+        Rehearsed(
+            "pin-on-disc, whole, 5 times as fast", "pin-on-disc", disc, by_hand=True, times=5.0, longest_s=3600.0
+        ),
+        Rehearsed("grosch at four temperatures, 5 times as fast", "grosch", text, times=5.0, longest_s=7200.0),
     )
 
 
