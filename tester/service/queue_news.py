@@ -68,5 +68,4 @@ class QueueNews:
         if watch is None or run is None or under_way is None or under_way.run != run.name:
             return None
         left_s = watch.track.standing().left_s
-        speed = run.speed if run.simulated else run.speed or 1.0
-        return None if left_s is None or speed is None else left_s / speed
+        return None if left_s is None or run.pace is None else left_s / run.pace

@@ -309,7 +309,7 @@ class Desk:
     @property
     def _lapse(self) -> float | None:
         """Rig seconds per second of the run, None if unknown."""
-        return (self.run.speed if self.run.simulated else self.run.speed or 1.0) if self.run is not None else None
+        return self.run.pace if self.run is not None else None
 
     def _situation(self) -> tuple[str, str, float]:
         """Return mode, reason, and seconds in this mode."""

@@ -168,6 +168,11 @@ class RunView:
     exit: int | None
     missing: tuple[str, ...]
 
+    @property
+    def pace(self) -> float | None:
+        """Rig seconds per second, None = as fast as possible; on wires 1 where no speed is stated."""
+        return self.speed if self.simulated else self.speed or 1.0
+
 
 @dataclass(frozen=True, slots=True)
 class ManualView:
