@@ -70,7 +70,7 @@ class Queue:
     utc: str = ""
     """Time of the newest event."""
     until_utc: str = ""
-    """Time by which every item has to end while the queue goes; "" for no limit."""
+    """Time by which every item has to end while the queue runs; "" for no limit."""
     entries: tuple[QueueEntry, ...] = ()
 
     def entry(self, number: int) -> QueueEntry:

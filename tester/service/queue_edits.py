@@ -11,9 +11,9 @@ from tester.service.commands import QueueAdd, QueueDrop, QueueMove, QueueOrder, 
 
 
 def stood(queue: Queue, by: str) -> QueueEvent:
-    """Return the event that lets a queue stand that goes; raises QueueError for another."""
+    """Return the event that stops a running queue; raises QueueError if it does not run."""
     if not queue.going:
-        raise QueueError("it stands already")
+        raise QueueError("the queue is not running")
     return QueueStood(by)
 
 

@@ -59,7 +59,7 @@ class AnswerLimit:
 
 
 def then_skips(item: QueueItem, queue: Queue) -> tuple[bool, str]:
-    """Return whether the queue may go on after an item without an answer, and if not, why."""
+    """Return whether the queue continues after an item without an answer, and if not, why."""
     if item.unanswered is None or not item.unanswered.skip:
         return False, ""
     following = queue.next
