@@ -25,10 +25,11 @@ from tester.base.processes import tester_command
 from tester.page.desk_call import DeskView, NewCode, NoPageError, ShowDesk, call_desk
 from tester.page.roles import Role
 from tester.service.address import HAS_UNIX
-from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, holds
+from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
 from tests.campaigns.stop import scenes
 from tests.campaigns.stop.owner import STOPS
 from tests.campaigns.stop.place import NotReachedError, Place, ended
+from tests.campaigns.stop.scans import Scans
 
 TRIES, SAMPLE = 200, 60
 MEDIAN_MS, MOST_MS = 50.0, 100.0
@@ -169,20 +170,8 @@ async def measured(folder: Path, count: int, port: int) -> list[Figure]:
             loud = calm_s, clock.monotonic()
             found.append(holds("the wheel still slides", scenes.slides(client.state), client.state.mode, "RUN"))
             found.append(await scenes.ended_by_the_operator(place, client))
-            found += scans_of(place, quiet, loud)
+            found += Scans(place, quiet, loud).figures(f"{PAGES + 1} pages")
     return found
-
-
-def scans_of(place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> list[Figure]:
-    """Compare scans beside pages with those of the same run without them."""
-    scans = scenes.Scans(place, quiet, loud)
-    before, beside = 1e3 * scenes.nth(scans.before, 0.99), 1e3 * scenes.nth(scans.beside, 0.99)
-    loops = 1e3 * scenes.nth(scans.loops, 0.99)
-    note = f" (without them {before:.2f}, bare loops {loops:.2f})"
-    return [
-        at_least("scans beside 21 pages", len(scans.beside), 0.9 * 100.0 * scans.seconds),
-        at_most("99 % of scans beside them are late by", beside, before + loops, "ms", 2, note=note),
-    ]
 
 
 def main(arguments: list[str] | None = None) -> int:

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncGenerator, AsyncIterator, Callable, Iterable, Sequence
+from collections.abc import AsyncGenerator, AsyncIterator, Callable, Sequence
 from contextlib import AbstractContextManager, asynccontextmanager, suppress
 from dataclasses import dataclass
-from math import ceil
 from pathlib import Path
 
 from tester.base import clock
@@ -19,6 +18,7 @@ from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, 
 from tests.campaigns.stop.hostile import BY_FORCE, KINDS
 from tests.campaigns.stop.owner import PROBE
 from tests.campaigns.stop.place import NICED_LOOPS, NotReachedError, Place, Try
+from tests.campaigns.stop.scans import Scans, latest_kept, latest_of, limit_of
 
 ASKED_S = 0.1
 QUIET_S = 10.0
@@ -122,7 +122,7 @@ async def sliding_and_resting(place: Place, client: Client, attack: Attack, coun
         yield at_most("rate at a rest", client.state.tick.rate_hz, 10.0, "Hz", 1)
     yield await ended_by_the_operator(place, client)
     scans = Scans(place, quiet, loud)
-    for figure in scans.figures():
+    for figure in scans.figures("hostile clients"):
         yield figure
     rounds = [scans]
     while not latest_kept(rounds[:1]) and len(rounds) < MOST_ROUNDS:
@@ -153,62 +153,6 @@ async def begin_to_slide(place: Place, client: Client, loud_s: float) -> tuple[f
     from_s = clock.monotonic()
     await asyncio.sleep(QUIET_S)
     return from_s, from_s + QUIET_S
-
-
-class Scans:
-    """How late scans were without hostile clients and beside them, as long watched, and how late bare loops, s."""
-
-    def __init__(self, place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> None:
-        """``quiet``, ``loud``: from when to when (tester.base.clock.monotonic); the run has ended."""
-        scans = place.scans()
-        self.seconds = loud[1] - loud[0]
-        self.before = sorted(late for at, late in scans if quiet[0] <= at <= quiet[1])
-        self.beside = sorted(late for at, late in scans if loud[0] <= at <= loud[1])
-        self.loops = sorted(place.loops_late_s(*loud))
-
-    def figures(self) -> list[Figure]:
-        """What was seen in the first round; the latest scan is judged over all of them."""
-        limit_ms = 1e3 * (nth(self.before, 0.99) + nth(self.loops, 0.99))
-        return [
-            at_least("scans beside hostile clients", len(self.beside), 0.9 * 100.0 * self.seconds),
-            at_most("99 % of scans beside them are late by", 1e3 * nth(self.beside, 0.99), limit_ms, "ms", 2,
-                    note=f" (without them {1e3 * nth(self.before, 0.99):.2f}, "
-                    f"bare loops {1e3 * nth(self.loops, 0.99):.2f})"),
-            holds("latest scan without them", True,
-                  f"{1e3 * nth(self.before, 1.0):.1f} ms of {len(self.before)}", "no limit"),
-        ]  # fmt: skip
-
-
-def latest_kept(rounds: Sequence[Scans]) -> bool:
-    """The latest scan beside hostile clients is no later than the latest without them by more than the loops show."""
-    seen = all(one.before and one.beside and one.loops for one in rounds)
-    return seen and worst(one.beside for one in rounds) <= latest_limit_s(rounds)
-
-
-def latest_limit_s(rounds: Sequence[Scans]) -> float:
-    """Return how late a scan may be beside hostile clients, of all rounds, s."""
-    return worst(one.before for one in rounds) + worst(one.loops for one in rounds)
-
-
-def latest_of(rounds: Sequence[Scans]) -> str:
-    """Return the latest scan beside hostile clients, in words."""
-    loop_s = worst(one.loops for one in rounds)
-    return f"{1e3 * worst(one.beside for one in rounds):.1f} ms (bare loop {1e3 * loop_s:.1f})"
-
-
-def limit_of(rounds: Sequence[Scans]) -> str:
-    """Return what it may be, in words."""
-    return f"at most {1e3 * latest_limit_s(rounds):.1f} ms"
-
-
-def worst(late: Iterable[Sequence[float]]) -> float:
-    """Return the greatest of sorted numbers, NaN where there are none."""
-    return max((nth(one, 1.0) for one in late), default=float("nan"))
-
-
-def nth(late: Sequence[float], share: float) -> float:
-    """Return what so great a share of sorted numbers does not exceed, NaN for none."""
-    return late[ceil(share * len(late)) - 1] if late else float("nan")
 
 
 def slides(view: StateView) -> bool:
