@@ -24,7 +24,7 @@ def lines(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
         if heading:
             yield ""
             yield heading
-        text = f"{_indent(step)}{part.words(step, step_estimate)}"
+        text = f"{_indent(step)}{part.words(step, step_estimate)}{_read(step)}"
         yield f"{text:<{_WIDTH}} {rough_duration(step_estimate.seconds):>10}" if step_estimate.seconds else text
     yield ""
     yield from totals(plan, estimate, part)
@@ -43,6 +43,11 @@ def totals(plan: Plan, estimate: Estimate, part: RecipePart) -> Iterator[str]:
 
 def _indent(step: Step) -> str:
     return "    " if isinstance(step, ConditionStep) else "  "
+
+
+def _read(step: Step) -> str:
+    """Return what a person reads where a piece is put on, in words: only steps that mount one ask for a hardness."""
+    return ", its hardness is read" if getattr(step, "hardness", False) else ""
 
 
 _encode: Final = json.JSONEncoder(ensure_ascii=False, allow_nan=False).encode

@@ -28,6 +28,12 @@ def test_the_plan_lists_wheels_steps_and_totals() -> None:
     assert "peak temperature" in text
 
 
+def test_the_plan_names_a_hardness_that_is_read_at_mounting() -> None:
+    asked = PREPARED.replace('"1#"', '"1#"\n    measured: {hardness: prompt}')
+    assert any("install wheel 1, its hardness is read" in line for line in described(asked))
+    assert not any("hardness" in line for line in described(PREPARED))
+
+
 def test_angles_are_named_where_there_are_any() -> None:
     text = "\n".join(described(SMALL.replace("name: load", "name: load\n    sideslip: 10 deg\n    camber: -2 deg")))
     assert "300 mm/s, 100 N, sideslip 10 deg, camber -2 deg, 25 degC" in text
