@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 import pytest
@@ -13,14 +11,14 @@ from tests.tester.page.browser.stage import Front
 from tests.tester.service import views
 
 pytest.importorskip("playwright", reason="the browser's driver is not installed: pip install '.[browser]'")
+pytest.importorskip("axe_playwright_python", reason="axe-core is not installed: pip install '.[browser]'")
+from axe_playwright_python.base import AXE_SCRIPT
 from playwright.sync_api import expect
 
 if TYPE_CHECKING:
     from playwright.sync_api import Browser, BrowserContext, Page
 
 VIEWS = ("live", "map", "results", "replay", "queue", "paired")
-AXE = os.environ.get("TESTER_AXE", "")
-"""File axe.min.js of axe-core 4 (MPL-2.0, `npm pack axe-core`): a tool of the tests, not part of this project."""
 SERIOUS = ("serious", "critical")
 Scheme = Literal["light", "dark"]
 
@@ -38,17 +36,15 @@ def prepared(on: Front, page: Page, view: str) -> None:
         expect(page.locator(".overlay canvas")).to_have_count(1)
 
 
-@pytest.mark.skipif(not Path(AXE).is_file(), reason="no axe-core: TESTER_AXE names no file axe.min.js")
 @pytest.mark.parametrize("scheme", ["light", "dark"])
-@pytest.mark.parametrize("width", [400, 1280])
+@pytest.mark.parametrize("width", SIZES)
 def test_axe_finds_no_serious_fault(on: Front, chrome: Browser, width: int, scheme: Scheme) -> None:
     context = chrome.new_context(viewport={"width": width, "height": SIZES[width]}, color_scheme=scheme)
     page = on.open(context)
-    script = Path(AXE).read_text(encoding="utf-8")
     found: list[tuple[str, str, Any]] = []
 
     def look(view: str) -> None:
-        page.evaluate(script)
+        page.evaluate(AXE_SCRIPT)
         result = page.evaluate("axe.run(document, { resultTypes: ['violations'] })")
         found.extend((view, fault["id"], [node["target"] for node in fault["nodes"]][:3])
                      for fault in result["violations"] if fault["impact"] in SERIOUS)  # fmt: skip
