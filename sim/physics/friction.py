@@ -13,6 +13,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Annotated, Any, Final
 
+from sim.physics.figures import refuse
+
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
@@ -46,7 +48,7 @@ class PaperParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, ())
+        refuse(self, ())
 
 
 @dataclass(frozen=True, slots=True)
@@ -67,7 +69,7 @@ class V2Parameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, ("beta", "c", "b2"))
+        refuse(self, ("beta", "c", "b2"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,23 +89,13 @@ class NormalisedParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, ("beta", "c", "b2"))
+        refuse(self, ("beta", "c", "b2"))
 
     def as_printed(self) -> PaperParameters:
         """Return the parameters in the form of the paper's Table 3, with f(25) = 1."""
         gamma = 1.0 - self.a * math.exp(-self.beta * (V2_TEMPERATURE_C - self.tm) ** 2)
         a1 = self.c * V2_LOAD_N**-self.b1 * V2_SLIP_M_S**-self.b2
         return PaperParameters(self.a, self.beta, gamma, a1, self.a2, self.b1, self.b2, self.tm)
-
-
-def _refuse(group: Any, above_zero: tuple[str, ...]) -> None:
-    """Raise ValueError unless every number is finite, and above 0 where it has to be."""
-    for item in fields(group):
-        value: float = getattr(group, item.name)
-        if not math.isfinite(value):
-            raise ValueError(f"{item.name} must be finite, not {value!r}")
-        if item.name in above_zero and not value > 0.0:
-            raise ValueError(f"{item.name} must be above 0, not {value!r}")
 
 
 COMPOUNDS: Final[dict[str, PaperParameters]] = {

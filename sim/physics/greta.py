@@ -25,6 +25,7 @@ from typing import TYPE_CHECKING, Annotated, Final, NamedTuple
 
 import numpy as np
 
+from sim.physics.figures import with_figures
 from sim.physics.materials import Components, length_text
 from sim.physics.scratch import Scratch
 
@@ -157,8 +158,4 @@ class Greta:
 
 def greta(rubber: Rubber, surface: Surface, figures: Mapping[str, float]) -> Greta:
     """Return the law of a rubber on a surface with these figures (keys of GretaParameters). Raises ValueError."""
-    known = [item.name for item in fields(GretaParameters)]
-    unknown = [name for name in figures if name not in known]
-    if unknown:
-        raise ValueError(f"compound {rubber.name!r}: greta has no {', '.join(unknown)}; it has {', '.join(known)}")
-    return Greta(rubber, surface, GretaParameters(**figures))
+    return Greta(rubber, surface, with_figures("greta", GretaParameters, rubber.name, figures))

@@ -11,10 +11,11 @@ above its glass transition.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
-from math import exp, isfinite, log, log10
-from typing import Annotated, Any, Final, TypeVar
+from dataclasses import dataclass
+from math import exp, log, log10
+from typing import Annotated, Final
 
+from sim.physics.figures import refuse, with_figures
 from sim.physics.wlf import heated
 
 GAS_J_MOL_K: Final = 8.314462618
@@ -35,7 +36,7 @@ class PowerParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, ("a", "v0", "n0"))
+        refuse(self, ("a", "v0", "n0"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -51,7 +52,7 @@ class ArrheniusParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        _refuse(self, ("width", "v_ref", "energy"))
+        refuse(self, ("width", "v_ref", "energy"))
         if not 0.0 <= self.mu_0 <= self.mu_max:
             raise ValueError(f"ArrheniusParameters.mu_0 is 0 to mu_max ({self.mu_max:g}), not {self.mu_0!r}")
         if not self.t_ref > -KELVIN:
@@ -103,29 +104,9 @@ class Arrhenius:
 
 def power(compound: str, figures: Mapping[str, float]) -> PowerLaw:
     """Return the law of a compound with these figures (keys of PowerParameters). Raises ValueError."""
-    return PowerLaw(_made("power", PowerParameters, compound, figures))
+    return PowerLaw(with_figures("power", PowerParameters, compound, figures))
 
 
 def arrhenius(compound: str, figures: Mapping[str, float]) -> Arrhenius:
     """Return the law of a compound with these figures (keys of ArrheniusParameters). Raises ValueError."""
-    return Arrhenius(_made("arrhenius", ArrheniusParameters, compound, figures))
-
-
-_Made = TypeVar("_Made", PowerParameters, ArrheniusParameters)
-
-
-def _made(law: str, parameters: type[_Made], compound: str, figures: Mapping[str, float]) -> _Made:
-    known = [item.name for item in fields(parameters)]
-    unknown = [name for name in figures if name not in known]
-    if unknown:
-        raise ValueError(f"compound {compound!r}: {law} has no {', '.join(unknown)}; it has {', '.join(known)}")
-    return parameters(**figures)
-
-
-def _refuse(group: Any, above_zero: tuple[str, ...]) -> None:
-    for item in fields(group):
-        value: float = getattr(group, item.name)
-        if not isfinite(value):
-            raise ValueError(f"{type(group).__name__}.{item.name} must be finite, not {value!r}")
-        if item.name in above_zero and not value > 0.0:
-            raise ValueError(f"{type(group).__name__}.{item.name} must be above 0, not {value!r}")
+    return Arrhenius(with_figures("arrhenius", ArrheniusParameters, compound, figures))

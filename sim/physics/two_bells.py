@@ -14,11 +14,12 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated
 
+from sim.physics.figures import refuse, with_figures
 from sim.physics.materials import Components
-from sim.physics.wlf import C1, C2_K, FITTED_K, GLASS_TO_REFERENCE_K, heated, log10_shift
+from sim.physics.wlf import C1, C2_K, beyond_shift, heated, log10_shift
 
 
 @dataclass(frozen=True, slots=True)
@@ -41,14 +42,8 @@ class TwoBellsParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        for item in fields(self):
-            value: float = getattr(self, item.name)
-            if not math.isfinite(value):
-                raise ValueError(f"TwoBellsParameters.{item.name} must be finite, not {value!r}")
-            if item.name in ("mu_0", "adhesion", "hysteresis") and value < 0.0:
-                raise ValueError(f"TwoBellsParameters.{item.name} must be at least 0, not {value!r}")
-            if item.name not in ("mu_0", "adhesion", "hysteresis", "t_ref") and not value > 0.0:
-                raise ValueError(f"TwoBellsParameters.{item.name} must be above 0, not {value!r}")
+        above_zero = ("adhesion_width", "hysteresis_width", "v_adhesion", "v_hysteresis", "c1", "c2")
+        refuse(self, above_zero, ("mu_0", "adhesion", "hysteresis"))
 
 
 class TwoBells:
@@ -68,12 +63,7 @@ class TwoBells:
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
         """Yield warnings for temperatures outside the shift's range, and speeds at which friction heats the contact."""
-        low_c = self._parameters.t_ref - GLASS_TO_REFERENCE_K
-        if not low_c <= temperature_c <= low_c + FITTED_K:
-            yield (
-                f"{temperature_c:g} degC is outside {low_c:g} to {low_c + FITTED_K:g} degC, from the glass transition"
-                f" to {FITTED_K:g} K above it, where the shift of WLF holds"
-            )
+        yield from beyond_shift(temperature_c, self._parameters.t_ref)
         yield from heated(slip_m_s)
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:
@@ -96,8 +86,4 @@ class TwoBells:
 
 def two_bells(compound: str, figures: Mapping[str, float]) -> TwoBells:
     """Return the law of a compound with these figures (keys of TwoBellsParameters). Raises ValueError."""
-    known = [item.name for item in fields(TwoBellsParameters)]
-    unknown = [name for name in figures if name not in known]
-    if unknown:
-        raise ValueError(f"compound {compound!r}: two_bells has no {', '.join(unknown)}; it has {', '.join(known)}")
-    return TwoBells(TwoBellsParameters(**figures))
+    return TwoBells(with_figures("two_bells", TwoBellsParameters, compound, figures))

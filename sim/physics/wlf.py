@@ -14,8 +14,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from typing import Annotated, Final
+
+from sim.physics.figures import refuse, with_figures
 
 C1: Final = 8.86
 C2_K: Final = 101.5
@@ -35,6 +37,16 @@ def heated(slip_m_s: float) -> Iterator[str]:
         yield (
             f"above {1e3 * HEATING_M_S:g} mm/s friction heats the contact, and the law knows no heat: the temperature"
             " is that of the contact"
+        )
+
+
+def beyond_shift(temperature_c: float, t_ref_c: float) -> Iterator[str]:
+    """Yield a warning for a temperature at which the shift with this reference, Tg + 50 K, was never found to hold."""
+    low_c = t_ref_c - GLASS_TO_REFERENCE_K
+    if not low_c <= temperature_c <= low_c + FITTED_K:
+        yield (
+            f"{temperature_c:g} degC is outside {low_c:g} to {low_c + FITTED_K:g} degC, from the glass transition to"
+            f" {FITTED_K:g} K above it, where the shift of WLF holds"
         )
 
 
@@ -72,20 +84,9 @@ class WlfBellParameters:
 
     def __post_init__(self) -> None:
         """Raise ValueError for values out of range."""
-        for item in fields(self):
-            value: float = getattr(self, item.name)
-            if not math.isfinite(value):
-                raise ValueError(f"WlfBellParameters.{item.name} must be finite, not {value!r}")
-            if item.name in ("width", "v_ref", "c1", "c2") and not value > 0.0:
-                raise ValueError(f"WlfBellParameters.{item.name} must be above 0, not {value!r}")
+        refuse(self, ("width", "v_ref", "c1", "c2"))
         if not 0.0 <= self.mu_0 <= self.mu_max:
             raise ValueError(f"WlfBellParameters.mu_0 is 0 to mu_max ({self.mu_max:g}), not {self.mu_0!r}")
-
-    @property
-    def fitted_c(self) -> tuple[float, float]:
-        """Least and greatest temperature at which the shift holds, degC: glass transition and 100 K above."""
-        glass_c = self.t_ref - GLASS_TO_REFERENCE_K
-        return glass_c, glass_c + FITTED_K
 
 
 class WlfBell:
@@ -108,12 +109,7 @@ class WlfBell:
 
     def caveats(self, temperature_c: float, load_n: float, slip_m_s: float) -> Iterator[str]:
         """Yield warnings for temperatures outside the shift's range, and speeds at which friction heats the contact."""
-        low_c, high_c = self._parameters.fitted_c
-        if not low_c <= temperature_c <= high_c:
-            yield (
-                f"{temperature_c:g} degC is outside {low_c:g} to {high_c:g} degC, from the glass transition to"
-                f" {FITTED_K:g} K above it, where the shift of WLF holds"
-            )
+        yield from beyond_shift(temperature_c, self._parameters.t_ref)
         yield from heated(slip_m_s)
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
@@ -128,8 +124,4 @@ class WlfBell:
 
 def wlf_bell(compound: str, figures: Mapping[str, float]) -> WlfBell:
     """Return the law of a compound with these figures (keys of WlfBellParameters). Raises ValueError."""
-    known = [item.name for item in fields(WlfBellParameters)]
-    unknown = [name for name in figures if name not in known]
-    if unknown:
-        raise ValueError(f"compound {compound!r}: wlf_bell has no {', '.join(unknown)}; it has {', '.join(known)}")
-    return WlfBell(WlfBellParameters(**figures))
+    return WlfBell(with_figures("wlf_bell", WlfBellParameters, compound, figures))
