@@ -158,7 +158,9 @@ def _without_orders(stretches: list[_Stretch]) -> tuple[list[Array], float]:
     friction = np.concatenate([stretch.friction for stretch in stretches])
     if not orders.shape[1]:
         return [stretch.friction for stretch in stretches], 0.0
-    fitted = np.linalg.lstsq(orders, friction, rcond=None)[0]
+    # Thousands of samples, a few columns of sines and cosines that are nearly orthogonal: the normal equations lose no
+    # digit that counts, in a tenth of the time.
+    fitted = np.linalg.lstsq(orders.T @ orders, orders.T @ friction, rcond=None)[0]
     swing = 100.0 * sqrt(2.0 * float(np.mean((orders @ fitted) ** 2)))
     return [stretch.friction - stretch.orders @ fitted for stretch in stretches], swing
 
