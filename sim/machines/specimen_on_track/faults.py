@@ -34,10 +34,11 @@ class TrackExposure(Enum):
     SLID = "in contact, once the arm's spring is drawn"
     LIFTING = "while the arm has a command to move"
     TEMPERED = "while the chamber has a command to run"
+    ASTRAY = "while the track runs at another speed than its command"
     NEAR_THE_END = "where the track comes to the end of its travel"
 
 
-MOVING, SLIDING, SLID, LIFTING, TEMPERED, NEAR_THE_END = TrackExposure
+MOVING, SLIDING, SLID, LIFTING, TEMPERED, ASTRAY, NEAR_THE_END = TrackExposure
 
 
 class TrackOverspeeds(drives.Runaway):
@@ -94,7 +95,7 @@ def _drive_rows() -> Iterator[FaultKind]:
                         note="seen once another speed or place is commanded; the track's travel ends at its switches")
     yield from rows_of("track", (common.FROZEN_INPUTS,))
     yield FaultKind("track stalls", partial(drives.Jammed, "track"), MOVING, TRIP, 1.2 + SCAN_S)
-    yield FaultKind("track overspeeds", TrackOverspeeds, ENABLED, TRIP, 1.2 + SCAN_S, "mm/s", 10.0)
+    yield FaultKind("track overspeeds", TrackOverspeeds, ASTRAY, TRIP, 1.2 + SCAN_S, "mm/s", 10.0)
     yield FaultKind("lift stuck", partial(drives.Jammed, "lift"), LIFTING, TRIP, 5.0,
                     note="a move that does not arrive within its time")
     yield FaultKind("end switch dead", end_switch_dead, NEAR_THE_END, MAY,

@@ -30,3 +30,14 @@ def test_some_faults_while_it_slides_leave_it_safe_in_time(moment: Moment) -> No
     tripped = {verdict.case.faults[0]: verdict.tripped_by for verdict in tally.verdicts}
     assert tripped["load cell open"] == "load cell saturated" and tripped["track stalls"] == "track speed"
     assert tripped["CAN frames repeated"] == "" and tripped["operator stop"] == ""
+
+
+def test_a_fault_with_a_magnitude_is_one_of_the_rigs_that_have_it() -> None:
+    assert track.fits("slow track", "track overspeeds 3 mm/s") and track.fits("disc", "load cell offset -150 N")
+    assert not track.fits("slow track", "pyrometer offset 5 K") and not track.fits("disc", "track overspeed 3 mm/s")
+
+
+def test_a_track_within_its_share_of_the_speed_is_not_astray(moment: Moment) -> None:
+    near, far = conduct("slide", [(moment, (f"track overspeeds {mm_s} mm/s",)) for mm_s in (0.24, 0.28)]).verdicts
+    assert near.failures == far.failures == []
+    assert far.tripped_by == "track speed" and far.ended_after_s < 1.3 < near.ended_after_s

@@ -34,6 +34,8 @@ WORKING = frozenset({"run", "hold"})
 AT_REST = frozenset({"idle", "latched"})
 MOVES_SHARE = 2e-5
 """A track faster than this share of its drive's greatest speed is meant to move: 0.2 um/s, 0.04 mm/s."""
+ASTRAY_SHARE = 0.3
+"""Off its command by more than this share, a track does not follow it: ``interlocks.speed_share``."""
 SLID_MM = 1.2
 """After this way under load rubber slides: the arm's spring is drawn."""
 TOUCHED_N = 0.1
@@ -133,6 +135,10 @@ class TrackExposed:
         moves = stage.all_on and told_m_s > MOVES_SHARE * track.config.max_speed * rig.metres
         if exposure is Exposure.ENABLED:
             return stage.all_on
+        if exposure is TrackExposure.ASTRAY:
+            wanted_m_s = state.setpoints.track_m_s
+            off_m_s = abs(track.axis.value * rig.metres - wanted_m_s)
+            return stage.all_on and off_m_s > ASTRAY_SHARE * abs(wanted_m_s)
         if exposure is TrackExposure.MOVING:
             return moves
         if exposure is TrackExposure.SLIDING:
@@ -209,7 +215,7 @@ FAULTS = tuple(dict.fromkeys(fault for recipe in GRID for fault in language_of(r
 
 def fits(recipe: str, fault: str) -> bool:
     """Tell whether the rig of a recipe has what a fault is of."""
-    if fault not in language_of(recipe).catalogue:
+    if not any(fault == phrase or fault.startswith(f"{phrase} ") for phrase in language_of(recipe).catalogue):
         return False
     rig = track_rig_of(TRACKS[recipe].rig, TRACKS[recipe].overrides)
     has = {"lift": rig.axes.lift is not None, "end switch": rig.linear}
