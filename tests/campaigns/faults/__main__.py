@@ -42,7 +42,7 @@ from tests.campaigns.faults.hardware import (
 from tests.campaigns.faults.judge import JUDGED, Verdict, connecting, fault_of
 from tests.campaigns.faults.moments import Moment, rehearse
 from tests.campaigns.faults.parametric import range_of
-from tests.campaigns.faults.recipes import GRID, language_of
+from tests.campaigns.faults.recipes import GRID, has, language_of
 
 SAMPLE_CASES = 420
 TRACK_CASES, TRACK_PAIRS = 300, 150
@@ -335,7 +335,8 @@ def again(report: Report, most: int) -> None:
 def needed(report: Report, jobs: int, at: Sequence[Moment], rows: tuple[MustHold, ...] = HARDWARE_MUST_HOLD) -> None:
     """Print for each row of hardware's list in how many of its cases software alone would not do."""
     for row in rows:
-        tally = conduct("doubles", [(moment, pair) for moment in at for pair in row.pairs], jobs, budgets=False)
+        cases = [(moment, pair) for moment in at for pair in row.pairs if all(has(moment.recipe, one) for one in pair)]
+        tally = conduct("doubles", cases, jobs, budgets=False)
         name = f"hardware must hold: {row.one} + {row.others[0]}{', ...' if len(row.others) > 1 else ''}"
         report.figure(name, f"{len(tally.unsafe)} of {len(tally.verdicts)} unsafe", ">= 1", bool(tally.unsafe))
 

@@ -147,6 +147,11 @@ def language_of(recipe: str) -> FaultLanguage:
     return _language(TRACKS[recipe].rig if recipe in TRACKS else "sim")
 
 
+def has(recipe: str, fault: str) -> bool:
+    """Tell whether the kind of machine of a recipe knows a fault, with a magnitude or without."""
+    return any(fault == phrase or fault.startswith(f"{phrase} ") for phrase in language_of(recipe).catalogue)
+
+
 @cache
 def _language(rig_name: str) -> FaultLanguage:
     rig = load_rig(rig_name)

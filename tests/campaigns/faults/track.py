@@ -25,7 +25,7 @@ from tests.campaigns.faults.campaign import pairs
 from tests.campaigns.faults.first_up import First
 from tests.campaigns.faults.hardware import MustHold
 from tests.campaigns.faults.moments import Moment
-from tests.campaigns.faults.recipes import TRACKS, language_of
+from tests.campaigns.faults.recipes import TRACKS, has, language_of
 from tests.campaigns.faults.stage import Ledger, Stage
 from tests.campaigns.faults.track_harm import TrackHarmObserver, TrackTruth
 from tests.tester.inputs.recipe.texts import load_recipe
@@ -215,13 +215,13 @@ FAULTS = tuple(dict.fromkeys(fault for recipe in GRID for fault in language_of(r
 
 def fits(recipe: str, fault: str) -> bool:
     """Tell whether the rig of a recipe has what a fault is of."""
-    if not any(fault == phrase or fault.startswith(f"{phrase} ") for phrase in language_of(recipe).catalogue):
+    if not has(recipe, fault):
         return False
     rig = track_rig_of(TRACKS[recipe].rig, TRACKS[recipe].overrides)
-    has = {"lift": rig.axes.lift is not None, "end switch": rig.linear}
-    has |= dict.fromkeys(("holder grinds", "height sensor"), "height_sensor" in rig.devices)
-    has |= {name: name in rig.devices for name in ("chamber", "pyrometer", "thermometer")}
-    return all(there for name, there in has.items() if fault.startswith(name))
+    parts = {"lift": rig.axes.lift is not None, "end switch": rig.linear}
+    parts |= dict.fromkeys(("holder grinds", "height sensor"), "height_sensor" in rig.devices)
+    parts |= {name: name in rig.devices for name in ("chamber", "pyrometer", "thermometer")}
+    return all(there for name, there in parts.items() if fault.startswith(name))
 
 
 ROWS = tuple(row.name for row in TABLE.rows)
@@ -294,13 +294,11 @@ NEVER_FIRST: dict[str, str] = {
 HARDWARE_MUST_HOLD: tuple[MustHold, ...] = (
     MustHold("track overspeeds",
              ("track drive off the bus", "track drive in local mode", "track drive fault", "CAN adapter gone",
-              "CAN bus off", "process killed"),
+              "CAN bus off", "process killed", "common drives clock silent"),
              "emergency stop circuit with safe torque off", "the order to lose its power does not reach its drive"),
     MustHold("track overspeeds", ("track drive feedback frozen", "track drive reading frozen", "track drive data lost"),
              "end switches of the travel, in the emergency stop circuit",
              "it moves until its voltage is disabled, half a second after a stop that its data call ended"),
-    MustHold("track overspeeds", ("scan stalled",), "end switches of the travel, in the emergency stop circuit",
-             "no program commands it meanwhile"),
 )  # fmt: skip
 """Pairs in which harm is possible whatever the software does."""
 PAIRS = 1200
