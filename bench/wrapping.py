@@ -13,7 +13,7 @@ ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
     ("twin", "sim.rig", "SimRig", ("advance",)),
     ("plant", "sim.machines.wheel_on_belt.plant", "Plant",
      ("advance", "forces_measured", "surface_measured_c", "controller_measured_c")),
-    ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance",)),
+    ("nodes: drives", "sim.nodes.cia402_slave", "Cia402Slave", ("advance", "move")),
     ("nodes: Modbus slaves", "sim.nodes.controller_slave", "ControllerSlave", ("advance",)),
     ("nodes: Modbus slaves", "sim.nodes.modbus_slave", "ModbusSlave", ("answer",)),
     ("bus: CAN", "sim.wires.can_wire", "CanWire", ("send", "send_cycle", "receive", "transmit")),

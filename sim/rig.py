@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 SHORTEST_STEP_S: Final = 1e-3
 LONGEST_STEP_S: Final = 0.1
 """Least and greatest step of the machine, s."""
+_SHORTEST_S: Final = SHORTEST_STEP_S - 1e-9
 LEAP_STEP_S: Final = 0.125
 """Step of the machine in a leap, s [A]: only heat flows, and a controller's loop has the same cycle."""
 
@@ -158,11 +159,14 @@ class SimRig:
     def advance(self, now: float) -> None:
         """Advance everything to ``now`` (rig s); a step shorter than a millisecond waits for the next one."""
         now -= self.leapt_s
-        elapsed = now - self.now_s
-        if elapsed < SHORTEST_STEP_S - 1e-9:
-            return
-        steps = 1 if elapsed <= LONGEST_STEP_S else 1 + floor(elapsed / LONGEST_STEP_S)
         start = self.now_s
+        elapsed = now - start
+        if elapsed < _SHORTEST_S:
+            return
+        if elapsed <= LONGEST_STEP_S:
+            self._step(start, now)
+            return
+        steps = 1 + floor(elapsed / LONGEST_STEP_S)
         for i in range(1, steps + 1):
             self._step(self.now_s, now if i == steps else start + elapsed * i / steps)
 
@@ -221,15 +225,21 @@ class SimRig:
         still = True
         for drive in self._drives:
             axis = drive.axis
-            if drive.watching or drive.due_s <= t1:
+            if drive.due_s <= t1:
                 drive.advance(t0, t1)
-                still = still and axis.still
+            elif drive.watching:
+                drive.move(t0, t1)
             else:
                 drive.now_s = t1
-                if not axis.still:
+                if axis.still:
+                    continue
+                if axis.settled and not axis.bounded:  # as nearly always: what its step does then, without the call
+                    axis.position += axis.value * (t1 - t0)
+                else:
                     axis.step(t1 - t0)
-                    drive.pdos.stale = True
-                    still = still and axis.still
+                drive.pdos.stale = True
+            if not axis.still:
+                still = False
         for node in self.nodes:
             node.advance(t0, t1)
         for device in self._timed:

@@ -134,7 +134,7 @@ class _OfDrive(Effect):
                 drive.misread_torque(max(0.01 * self._percent, 0.01), 0.0)
             return
         # The limit is written at connect, and the fault may be older.
-        span_nm = drive.torque_limit_nm() * drive.torque_gain + drive.torque_offset_nm
+        span_nm = drive.torque_limit_nm * drive.torque_gain + drive.torque_offset_nm
         size = _size(kind, self._percent, span_nm)
         drive.misread_torque(1.0, spoiled(kind, 0.0, size, now - self._since_s, self._noise, 0.0))
 

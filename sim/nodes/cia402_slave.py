@@ -48,7 +48,8 @@ class Cia402Slave(DrivePower):
     """One servo drive with its axis.
 
     For the plant: ``axis.value`` (velocity) and ``axis.position`` are in units of the axis. ``torque_nm`` is the load
-    torque for 0x6077 with the error of its measuring (``torque_gain``, ``torque_offset_nm``), set from outside, and
+    torque for 0x6077 with the error of its measuring (``torque_gain``, ``torque_offset_nm``), set from outside,
+    ``torque_limit_nm`` the true torque at the limit of 0x6072 and
     ``encoder_error`` the error of TPDO1's reading. ``io`` are the safety inputs and the contactor of a drive with
     digital I/O. While the power stage is off the axis is driven to ``unpowered_velocity`` (unit/s; a spring; 0: it
     coasts to rest) with ``coast_deceleration`` (unit/s2; by default the configured deceleration [A]).
@@ -57,6 +58,7 @@ class Cia402Slave(DrivePower):
     __slots__ = (
         "_by_position", "_increments", "_mode_bits", "_offset", "_per_mille", "_remote_bit", "_velocity", "homed",
         "homing",
+        "torque_limit_nm",
     )  # fmt: skip
 
     def __init__(
@@ -96,6 +98,8 @@ class Cia402Slave(DrivePower):
         self._increments = config.position_increments if self._by_position else config.velocity_increments
         self._per_mille = 1000.0 / config.rated_torque_nm * config.drive.units.torque
         self._remote_bit = cia402.REMOTE if config.drive.remote else 0
+        self.torque_limit_nm = 0.0
+        store.hooks[o.MAX_TORQUE] = self._on_max_torque
         drive_objects.install(self)
         self._application_reset()
         self.power(powered)
@@ -119,23 +123,29 @@ class Cia402Slave(DrivePower):
         while self.due_s <= t1:
             t = self.due_s
             if t > t0:
-                self._move(t0, t)
+                self.move(t0, t)
                 t0 = t
             self.fire(t0)
         if self.watching:
-            self._move(t0, t1)
-        elif not self.axis.still:
+            self.move(t0, t1)
+            return
+        if not self.axis.still:
             self.axis.step(t1 - t0)
             self.pdos.stale = True
         self.now_s = t1
 
-    def _move(self, t0: float, t1: float) -> None:
-        """Step the axis and update the drive's state for its motion."""
-        axis = self.axis
+    def move(self, t0: float, t1: float) -> None:
+        """Step the axis from ``t0`` to ``t1`` s, without a timer, and update the drive's state for its motion."""
+        axis, mode = self.axis, self.mode
         if not axis.still:
             axis.step(t1 - t0)
             self.pdos.stale = True
         self.now_s = t1
+        if self._leaving is None and mode is not None:  # as ``_watch``, without the call: nearly always
+            self.watching = mode.watch(t1, self.state is _OPERATING)
+            if mode.bits != self._mode_bits:
+                self.update(t1)
+            return
         if self._leaving is not None and self._at_rest():
             self._arrived_at_rest()
             self.update(t1)
@@ -171,11 +181,12 @@ class Cia402Slave(DrivePower):
         """Measure the torque with a gain (above 0) and an offset (N m) from now on; 1 and 0 is right."""
         true_nm = (self.torque_nm - self.torque_offset_nm) / self.torque_gain
         self.torque_gain, self.torque_offset_nm = gain, offset_nm
+        self._on_max_torque(0, self.store.values[_MAX_TORQUE])
         self.load(true_nm, self.encoder_error)
 
-    def torque_limit_nm(self) -> float:
-        """Return the true torque at the limit of 0x6072, N m: the drive limits the torque that it measures."""
-        return (self.store.values[_MAX_TORQUE] / self._per_mille - self.torque_offset_nm) / self.torque_gain
+    def _on_max_torque(self, sub: int, value: int) -> None:
+        """Find the true torque at the limit of 0x6072, ``value``: the drive limits the torque that it measures."""
+        self.torque_limit_nm = (value / self._per_mille - self.torque_offset_nm) / self.torque_gain
 
     def stall(self, position: float) -> None:
         """Stand at ``position`` (axis unit) with the torque limit of 0x6072; bit 11 shows it until ``unstall``."""
@@ -251,6 +262,7 @@ class Cia402Slave(DrivePower):
         """Reset to power-on: no torque, no mode, position counted from here unless the encoder is absolute."""
         self.mode = None
         self.reload_ramps()
+        self._on_max_torque(0, self.store.values[_MAX_TORQUE])
         self._controlword = 0
         self._power_stage_off(State.NOT_READY)
         if self.config.mode == "position":

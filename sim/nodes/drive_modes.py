@@ -16,6 +16,7 @@ from drivers.canopen import objects as o
 from sim.nodes.motion import VelocityAxis
 from sim.nodes.object_store import Key, ObjectStore
 
+_TARGET_REACHED: Final = cia402.TARGET_REACHED  # bound once, for the mode that is watched in every scan
 _UNLIMITED: Final = 0xFFFF_FFFF
 ROUNDING_S: Final = 1e-9
 _ENABLE: Final = 0x10
@@ -149,13 +150,16 @@ class ProfileVelocity:
         self._target = target
         ramps = self._drive.ramps
         speed = target / ramps.velocity_increments
-        limit = ramps.limit
+        limit, axis = ramps.limit, self._axis
         if -limit <= speed <= limit:
             self.limited = False
         else:
             self.limited = True
             speed = limit if speed > 0.0 else -limit
-        self._axis.aim(speed)
+        # As ``VelocityAxis.aim``, without the call: targets of the press change with nearly every scan.
+        axis.target = speed
+        axis.settled = settled = axis.value == speed == axis.demand
+        axis.still = settled and speed == 0.0
 
     def watch(self, t: float, enabled: bool) -> bool:
         """Update the status bits; return whether they may still change without a new target."""
@@ -163,14 +167,22 @@ class ProfileVelocity:
         value = axis.value
         bits = 0
         waiting = not axis.settled
-        window = ramps.velocity_window
-        if enabled and -window <= value - axis.target <= window:
-            if self._reached_at == inf:
-                self._reached_at = t + ramps.velocity_window_s
-            if t >= self._reached_at - ROUNDING_S:
-                bits = cia402.TARGET_REACHED
+        if enabled:
+            window = ramps.velocity_window
+            if -window <= value - axis.target <= window:
+                if self._reached_at == inf:
+                    self._reached_at = t + ramps.velocity_window_s
+                if t >= self._reached_at - ROUNDING_S:
+                    bits = _TARGET_REACHED
+                else:
+                    waiting = True
             else:
-                waiting = True
+                self._reached_at = inf
+            slippage = ramps.max_slippage
+            if not -slippage <= axis.demand - value <= slippage:
+                bits |= cia402.MAX_SLIPPAGE
+            if self.limited or self.at_torque_limit:
+                bits |= cia402.INTERNAL_LIMIT
         else:
             self._reached_at = inf
         threshold = ramps.velocity_threshold
@@ -183,11 +195,6 @@ class ProfileVelocity:
                 waiting = True
         else:
             self._zero_at = inf
-        slippage = axis.demand - value
-        if enabled and not -ramps.max_slippage <= slippage <= ramps.max_slippage:
-            bits |= cia402.MAX_SLIPPAGE
-        if enabled and (self.limited or self.at_torque_limit):
-            bits |= cia402.INTERNAL_LIMIT
         self.bits = bits
         return waiting
 

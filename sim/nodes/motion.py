@@ -28,7 +28,8 @@ class VelocityAxis:
     """An axis under velocity control: a linear ramp generator followed by a first-order lag.
 
     ``value`` is the velocity, ``position`` its integral. ``still``: nothing changes until the next
-    ``aim``, so a step may be skipped. ``low`` and ``high`` are hard stops of the position.
+    ``aim``, so a step may be skipped. ``settled``: only the position changes, by ``value`` a second, and ``bounded``:
+    it has hard stops, ``low`` and ``high``.
     """
 
     def __init__(
@@ -54,7 +55,7 @@ class VelocityAxis:
         self.yielded = 0.0
         self.settled = True
         self.still = True
-        self._bounded = low > -inf or high < inf
+        self.bounded = low > -inf or high < inf
 
     def aim(
         self, target: float, acceleration: float | None = None, deceleration: float | None = None
@@ -93,19 +94,22 @@ class VelocityAxis:
 
     def step(self, dt: float) -> None:
         """Advance by ``dt`` seconds (>= 0): from corner to corner of the ramp, the value lagging behind the demand."""
+        position = self.position
         if self.settled:
-            self.position += self.value * dt
-            if self._bounded and not self.low <= self.position <= self.high:
+            self.position = position = position + self.value * dt
+            if self.bounded and not self.low <= position <= self.high:
                 self._hit_stop()
             return
         target, demand, lag = self.target, self.demand, self.lag_s
-        yielded = self.yielded
-        value, position = self.value + yielded, self.position - yielded * dt
+        yielded, value = self.yielded, self.value
+        if yielded:
+            value, position = value + yielded, position - yielded * dt
         while dt > 0.0 and demand != target:
+            end, rate = target, self.acceleration
             if demand * target < 0.0:
                 end, rate = 0.0, self.deceleration
-            else:
-                end, rate = target, self.deceleration if abs(target) < abs(demand) else self.acceleration
+            elif rate != self.deceleration and abs(target) < abs(demand):
+                rate = self.deceleration
             slope = rate if end > demand else -rate
             span = (end - demand) / slope
             if span > dt:
@@ -142,7 +146,7 @@ class VelocityAxis:
             self.settled = True
             self.still = target == 0.0
         self.value = value
-        if self._bounded and not self.low <= self.position <= self.high:
+        if self.bounded and not self.low <= self.position <= self.high:
             self._hit_stop()
 
     def _hit_stop(self) -> None:
@@ -164,7 +168,7 @@ class PositionAxis:
     """An axis under position control: trapezoidal moves, retargeted on the fly.
 
     ``value`` is the velocity, ``position`` the position, ``demand`` the position of the trajectory. ``still``: the axis
-    rests at its target.
+    rests at its target. Moves are ``bounded`` by it, and never ``settled``.
     """
 
     def __init__(
@@ -179,8 +183,8 @@ class PositionAxis:
         self.value = 0.0
         self._speed = 0.0
         self.target = position
-        self.blocked = False
-        self.still = True
+        self.blocked = self.settled = False
+        self.bounded = self.still = True
         self._stopping = False
 
     def move(

@@ -84,7 +84,7 @@ def test_a_drive_that_is_not_fit_for_the_press_is_refused_by_name(profile: str, 
 @pytest.mark.parametrize("profile", PRESSES)
 def test_the_torque_limit_of_the_press_stands(profile: str) -> None:
     bus = Bus(axes(profile)).connect()
-    assert bus.nodes[1].torque_limit_nm() == pytest.approx(0.4 * PRESS.rated_torque_nm)
+    assert bus.nodes[1].torque_limit_nm == pytest.approx(0.4 * PRESS.rated_torque_nm)
 
 
 @pytest.mark.parametrize("profile", PROFILES)

@@ -41,9 +41,9 @@ def test_cell_and_press_torque_go_wrong_alike(fault: str, force: float, torque: 
 
 def test_a_drive_that_measures_too_little_limits_its_torque_as_much_too_late() -> None:
     rig = deepcopy(sliding())
-    limit_nm = rig.axes["press"].torque_limit_nm()
+    limit_nm = rig.axes["press"].torque_limit_nm
     play(rig, "common force supply gain 80 %", 0.1)
-    assert rig.axes["press"].torque_limit_nm() == pytest.approx(limit_nm / 0.8)
+    assert rig.axes["press"].torque_limit_nm == pytest.approx(limit_nm / 0.8)
 
 
 @pytest.mark.parametrize("fault", ["gain 80 %", "offset -10 %", "drift -60 %/min", "noise 5 %"])
@@ -51,13 +51,13 @@ def test_every_member_is_right_again_when_the_fault_ends(fault: str) -> None:
     rig = deepcopy(sliding())
     script, scene = FaultScript(), Scene(rig, Nobody())
     script.add([language_of(GRID[0]).parse(f"t={rig.now_s:.6f} s: common cabinet air {fault} for 1 s")])
-    limit_nm = rig.axes["press"].torque_limit_nm()
+    limit_nm = rig.axes["press"].torque_limit_nm
     for _ in range(150):
         script.act(scene, rig.now_s + 1e-6)
         script.renew(scene, rig.now_s)
         rig.advance(rig.now_s + 0.01)
     plant, t = rig.plant, rig.now_s
-    assert forces(rig)[2] == plant.force_z_n and rig.axes["press"].torque_limit_nm() == limit_nm
+    assert forces(rig)[2] == plant.force_z_n and rig.axes["press"].torque_limit_nm == limit_nm
     assert rig.ir.source.surface_measured_c(t) == plant.surface_measured_c(t)
     assert rig.jacket.source.controller_measured_c(t) == plant.controller_measured_c(t)
 

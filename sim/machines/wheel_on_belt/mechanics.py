@@ -190,13 +190,19 @@ class WheelMechanics(SimRig):
         if self.turned:
             press_mm, press_mm_s = (-press_mm, -press_mm_s) if "press" in self.turned else (press_mm, press_mm_s)
             sideslip_deg = -sideslip_deg if "sideslip" in self.turned else sideslip_deg
-        plant.advance(elapsed, wheel_rad_s, belt_m_s, press_mm, press_mm_s, sideslip_deg, self.heat_flowing_w)
+        io = self._press.io
+        heater_w = self.jacket.heater_w if io is not None and io.contactor_closed else 0.0  # heat_flowing_w
+        plant.advance(elapsed, wheel_rad_s, belt_m_s, press_mm, press_mm_s, sideslip_deg, heater_w)
         belt_nm = -plant.belt_force_n * self._roller_m
         if plant.force_z_n > 0.0 or self._yields:
-            radius_m = 0.0005 * plant.diameter_mm
-            wheel = self._give_way(self._wheel, plant.drive_torque_nm, WHEEL_KG_M2, radius_m, 1.0, elapsed)
-            belt = self._give_way(self._belt, belt_nm, BELT_KG_M2, self._roller_m, self._roller_m, elapsed)
-            self._yields = wheel or belt
+            wheel_nm, most_nm = plant.drive_torque_nm, self._wheel.torque_limit_nm
+            most_belt_nm = self._belt.torque_limit_nm
+            # Nearly always no drive is beyond its limit, nor was it: then none gives way.
+            if self._yields or not (-most_nm <= wheel_nm <= most_nm and -most_belt_nm <= belt_nm <= most_belt_nm):
+                radius_m = 0.0005 * plant.diameter_mm
+                wheel = self._give_way(self._wheel, wheel_nm, WHEEL_KG_M2, radius_m, 1.0, elapsed)
+                belt = self._give_way(self._belt, belt_nm, BELT_KG_M2, self._roller_m, self._roller_m, elapsed)
+                self._yields = wheel or belt
         self._show(wheel_axis.value, belt_axis.value, belt_nm)
 
     def _give_way(self, drive: Cia402Slave, load_nm: float, inertia: float, arm_m: float, per_rad: float, dt: float
@@ -207,7 +213,7 @@ class WheelMechanics(SimRig):
         ``arm_m``: from the shaft to the contact; ``per_rad``: the axis's speed at 1 rad/s. What friction takes falls
         with the slip, within a step too.
         """
-        axis, limit_nm = drive.axis, drive.torque_limit_nm()
+        axis, limit_nm = drive.axis, drive.torque_limit_nm
         size_nm = -load_nm if load_nm < 0.0 else load_nm
         if not isinstance(axis, VelocityAxis) or (axis.yielded == 0.0 and size_nm <= limit_nm) or dt <= 0.0:
             return False
@@ -256,12 +262,17 @@ class WheelMechanics(SimRig):
             wheel_nm, belt_nm = belt_nm, wheel_nm
         wheel_nm = self.wheel_shaft.shown_nm(wheel_nm, wheel_rad_s) if wheel.state in ENERGISED else 0.0
         belt_nm = self.belt_shaft.shown_nm(belt_nm, belt_m_s / self._roller_m) if belt.state in ENERGISED else 0.0
+        # What ``load`` does is written out where it would be called in every step.
         if wheel_rad_s != 0.0:
-            wheel.load(wheel_nm, plant.wheel_speed.error() * 2000.0 / plant.diameter_mm)
+            wheel.torque_nm = wheel.torque_gain * wheel_nm + wheel.torque_offset_nm
+            wheel.encoder_error = plant.wheel_speed.error() * 2000.0 / plant.diameter_mm
+            wheel.pdos.stale = True
         elif wheel.encoder_error != 0.0 or wheel.torque_nm != wheel_nm:
             wheel.load(wheel_nm, 0.0)
         if belt_m_s != 0.0:
-            belt.load(belt_nm, plant.belt_speed.error())
+            belt.torque_nm = belt.torque_gain * belt_nm + belt.torque_offset_nm
+            belt.encoder_error = plant.belt_speed.error()
+            belt.pdos.stale = True
         elif belt.encoder_error != 0.0 or belt.torque_nm != belt_nm:
             belt.load(belt_nm, 0.0)
         press_nm = 0.0
@@ -269,13 +280,13 @@ class WheelMechanics(SimRig):
             axis = press.axis
             press_nm = self._screw.torque_nm(plant.force_z_n, axis.position)
             if axis.blocked and axis.demand != 0.0:
-                press_nm = copysign(press.torque_limit_nm(), axis.demand)
+                press_nm = copysign(press.torque_limit_nm, axis.demand)
         if press.torque_nm != press_nm:
             press.load(press_nm, 0.0)
 
     def _bear(self, drive: Cia402Slave) -> None:
         """Limit the press to its drive's torque: it stalls; a greater load drives it back."""
-        limit_nm, plant = drive.torque_limit_nm(), self.plant
+        limit_nm, plant = drive.torque_limit_nm, self.plant
         if self._spring_mm_s and drive.state not in ENERGISED:
             # The spring at 0 mm makes coast_deceleration of the screw's inertia; the load pushes the same way.
             axis, screw = drive.axis, self._screw

@@ -27,6 +27,9 @@ class StandstillRelay:
 
     def look(self, wheel_m_s: float, belt_m_s: float, now_s: float) -> bool:
         """Read the speeds of tread and belt at ``now_s``; return whether ``off`` has changed."""
+        if wheel_m_s >= STANDS_M_S and belt_m_s >= STANDS_M_S and not self.off:  # both turn, as nearly always
+            self._since_s = inf
+            return False
         wheel_turns = not -STANDS_M_S < wheel_m_s < STANDS_M_S
         belt_turns = not -STANDS_M_S < belt_m_s < STANDS_M_S
         before = self.off

@@ -42,7 +42,7 @@ def test_every_drive_is_configured_online_and_homed(simulation: Simulation) -> N
 def test_the_press_has_its_limit_of_torque_and_says_so(simulation: Simulation) -> None:
     press = connect(simulation).devices.axes.press
     assert press.parameters[MAX_TORQUE, 0] == press.config.max_torque_per_mille == 230
-    assert simulation.world.axes["press"].torque_limit_nm() == pytest.approx(0.46)
+    assert simulation.world.axes["press"].torque_limit_nm == pytest.approx(0.46)
 
 
 def test_no_drive_has_power_after_connecting(simulation: Simulation) -> None:

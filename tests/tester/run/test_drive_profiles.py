@@ -32,7 +32,7 @@ def test_a_short_recipe_runs_to_its_end_without_a_trip(profile: str) -> None:
     run = simulation.run
     assert run.engine.control.state.trip is None and run.outcome is Outcome.DONE, run.reason
     press = simulation.world.axes["press"]
-    assert press.torque_limit_nm() == pytest.approx(0.46, abs=0.001)
+    assert press.torque_limit_nm == pytest.approx(0.46, abs=0.001)
 
 
 @pytest.mark.parametrize("profile", NOT_FOR_A_PRESS)

@@ -150,7 +150,7 @@ def test_a_drive_gives_way_to_friction_beyond_its_torque_and_follows_again(name:
     drive = world.axes[name]
 
     def after(per_mille: int) -> float:
-        drive.store.values[(MAX_TORQUE, 0)] = per_mille
+        drive.store.write(MAX_TORQUE, 0, per_mille)
         for _ in range(12):
             world.advance(world.now_s + 0.002)
         return world.plant.slip_m_s
@@ -199,7 +199,7 @@ def powered(seed: int = 0, per_mille: int = 230) -> WheelRig:
     wheel, press = world.axes["wheel"], world.axes["press"]
     assert isinstance(wheel.axis, VelocityAxis)
     wheel.axis.aim(17.8)
-    press.store.values[MAX_TORQUE, 0] = per_mille
+    press.store.write(MAX_TORQUE, 0, per_mille)
     press.axis.position = 9.5
     press.state, press.mode = State.OPERATION_ENABLED, press.modes[OperationMode.PROFILE_VELOCITY]
     return world
@@ -246,7 +246,7 @@ def test_a_press_is_driven_back_by_a_load_far_beyond_its_torque() -> None:
     world = powered(per_mille=3000)
     driven(world, 5.0, 1.0)
     before_mm = world.axes["press"].axis.position
-    world.axes["press"].store.values[MAX_TORQUE, 0] = 80
+    world.axes["press"].store.write(MAX_TORQUE, 0, 80)
     driven(world, 5.0, 0.05)
     assert world.axes["press"].axis.position < before_mm - 0.5
 
