@@ -58,8 +58,9 @@ class HeatFlow:
             self._quiet_s = 0.0
             if self._calm:
                 self._disturb()
-            self._key = key
-            self._gains = self._every_gains[key]
+            if key != self._key:
+                self._key = key
+                self._gains = self._every_gains[key]
         if touching:
             self._friction_j += friction_w * dt
             self._touch_s += dt

@@ -225,22 +225,24 @@ class Plant(Rubbing):
             self._retime(dt)
         if sideslip_deg != self._sideslip_deg:
             self._yaw(sideslip_deg)
-        if not -_SAME_SIZE_K < self._flow.rubber_c - self._warm_c < _SAME_SIZE_K:
-            self._grow(self._flow.rubber_c)
+        flow = self._flow
+        if not -_SAME_SIZE_K < flow.rubber_c - self._warm_c < _SAME_SIZE_K:
+            self._grow(flow.rubber_c)
         self.wheel_angle_rev = turns = self.wheel_angle_rev + wheel_rad_s * dt / _TURN
         wheel_m_s = 0.0005 * self.diameter_mm * wheel_rad_s
         vx, vy = wheel_m_s - belt_m_s * self._cos, belt_m_s * self._sin
         self.slip_m_s = sqrt(vx * vx + vy * vy)
         power_w = load_n = 0.0
         depth_mm, swing, relaxation = press_mm - self._touch_mm, self._swing_mm, self._relaxation
+        angle = _TURN * turns
         if depth_mm > -swing:
-            depth_mm += swing * sin(_TURN * turns)
+            depth_mm += swing * sin(angle)
         if depth_mm > 0.0:
             factor, exponent, damping = self._stiffness
             load_n = factor * math.pow(depth_mm, exponent)
             if relaxation is not None:
                 load_n = relaxation.load_n(load_n)
-            load_n += damping * (press_mm_s + swing * wheel_rad_s * cos(_TURN * turns))
+            load_n += damping * (press_mm_s + swing * wheel_rad_s * cos(angle))
         elif relaxation is not None:
             relaxation.rest(dt)
         if load_n > 0.0:
@@ -250,8 +252,9 @@ class Plant(Rubbing):
         elif self.force_z_n > 0.0:
             self._release()
         turning = abs(wheel_m_s) > self._rotating_above
-        self.surface_c = surface_c = self._flow.advance(dt, heater_w, power_w, load_n > 0.0, turning)
-        self.ir.follow(surface_c)
+        self.surface_c = surface_c = flow.advance(dt, heater_w, power_w, load_n > 0.0, turning)
+        ir = self.ir  # its ``follow``, without the call
+        ir.lagged_c += (surface_c - ir.lagged_c) * ir.gain
 
     def _retime(self, dt: float) -> None:
         """Prepare the values that depend on the length of a tick alone."""

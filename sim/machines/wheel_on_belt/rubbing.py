@@ -1,8 +1,8 @@
 """Friction between wheel and belt: the law, its scatter, and the wear.
 
 Forces are those on the belt in the wheel's frame: Fx along the wheel's plane (above 0 when the wheel drives), Fy across
-it, Fz the load. ``diameter_mm`` is the wheel's present diameter, grown by its heat; ``cold_mm`` is that at ambient
-temperature, for a calliper: wear reduces it.
+it, Fz the load; ``belt_force_n`` is that along the belt's travel. ``diameter_mm`` is the wheel's present diameter,
+grown by its heat; ``cold_mm`` is that at ambient temperature, for a calliper: wear reduces it.
 
 Scatter multiplies the coefficient. A setting has one factor for each compound, the same for every repeat, wheel and
 place in a recipe: it is the error of the model for this rubber at this setting. A wheel and a repeat have factors of
@@ -38,9 +38,9 @@ class Rubbing:
     __slots__ = (
         "_arm_m", "_blunts", "_compound", "_cornering", "_cos", "_deficit", "_deficit_keep", "_excess", "_friction",
         "_grip", "_law", "_noise", "_rubber", "_run_in_m", "_run_in_scale_m", "_scatter", "_sideslip_deg", "_sin",
-        "_stick_slip", "_touch_mm", "_wear_per_width", "_within", "belt", "belt_grip", "cold_mm", "condition_factor",
-        "diameter_mm", "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "mu", "parameters", "run_factor",
-        "setting", "sliding_m", "slip_m_s", "surface_c", "wheel_factor",
+        "_stick_slip", "_touch_mm", "_wear_per_width", "_within", "belt", "belt_force_n", "belt_grip", "cold_mm",
+        "condition_factor", "diameter_mm", "drive_torque_nm", "force_x_n", "force_y_n", "force_z_n", "mu", "parameters",
+        "run_factor", "setting", "sliding_m", "slip_m_s", "surface_c", "wheel_factor",
     )  # fmt: skip
 
     def __init__(self, parameters: SimParameters, seed: int) -> None:
@@ -87,7 +87,7 @@ class Rubbing:
     def _release(self) -> None:
         """Set all forces to 0; the next touch builds friction up anew."""
         self.mu = 0.0
-        self.force_x_n = self.force_y_n = self.force_z_n = 0.0
+        self.force_x_n = self.force_y_n = self.force_z_n = self.belt_force_n = 0.0
         self.drive_torque_nm = 0.0
         self._deficit = self.parameters.friction.touch_deficit
 
@@ -133,7 +133,12 @@ class Rubbing:
         mu = self._law.mu(self.surface_c, load_n if load_n > floor_n else floor_n, slip_m_s)
         within = self._within
         if within.kick:
-            within.value = within.keep * within.value + within.kick * self._noise.next()
+            noise = self._noise
+            for number in noise.numbers:  # noqa: B007 - saves a call: see NormalStream
+                break
+            else:
+                number = noise.next()
+            within.value = within.keep * within.value + within.kick * number
         mu *= self._cornering * self._scatter * (1.0 + within.value)
         sliding_m = self.sliding_m
         if sliding_m < self._run_in_m:
@@ -153,7 +158,10 @@ class Rubbing:
             cx, cy = 1.0 if along >= reversal else -1.0 if along <= -reversal else along / reversal, 0.0
         else:
             cx, cy = traction_direction(vx, vy, creep, reversal)
-        self.force_x_n, self.force_y_n, self.force_z_n = friction_n * cx, friction_n * cy, load_n
+        self.force_x_n = fx = friction_n * cx
+        self.force_y_n = fy = friction_n * cy
+        self.force_z_n = load_n
+        self.belt_force_n = fx * self._cos - fy * self._sin
         diameter_mm = self.diameter_mm
         self.drive_torque_nm = 0.0005 * diameter_mm * friction_n * cx
 
@@ -169,11 +177,6 @@ class Rubbing:
     def moment_z_nm(self) -> float:
         """True aligning moment in N m."""
         return self._arm_m * self.force_y_n
-
-    @property
-    def belt_force_n(self) -> float:
-        """True force on the belt along its travel, in N."""
-        return self.force_x_n * self._cos - self.force_y_n * self._sin
 
 
 class Belt(NamedTuple):

@@ -60,7 +60,10 @@ class LoadCellSensor:
         if self._noisy:
             sx, sy, sz, bx, by, bz, rms, moment_rms = self._sizes
             ox, oy, oz = self._offsets_n
-            n1, n2, n3, n4 = self.noise.next4()
+            for n1, n2, n3, n4 in self.noise.fours:  # noqa: B007 - NormalStream says why it is a loop
+                break
+            else:
+                n1, n2, n3, n4 = self.noise.next4()
             x += x * (sx - bx * x if x > 0.0 else sx + bx * x) + ox + rms * n1
             y += y * (sy - by * y if y > 0.0 else sy + by * y) + oy + rms * n2
             z += z * (sz - bz * z if z > 0.0 else sz + bz * z) + oz + rms * n3
