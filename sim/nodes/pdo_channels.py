@@ -230,6 +230,7 @@ class TransmitPdo:
         self.fields = mapped.fields
         self.keys: tuple[Key, ...] = tuple((index, sub) for index, sub, _ in mapped.fields)
         self.pack = mapped.pack
+        self.size = mapped.size
         self.source: Callable[[], bytes] = self.bytes_now
         self.kind = parameters.kind
         self.synchronous = self.kind <= LAST_CYCLIC

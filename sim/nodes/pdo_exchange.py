@@ -119,6 +119,7 @@ class PdoExchange(SyncFollower):
             self._single = len(self._each_sync) == 1 and not self._counted_tpdos
             if self._single:
                 self.sample_id, self.take_sample = self._each_sync[0]
+                self.sample_s = self._wire.frame_s(next(pdo.size for pdo in sending if pdo.kind == 1))
             self.plain = self._single and not self.urgent
             self.stale = True
             self._wire.follow(self, self._store.node_id)

@@ -50,6 +50,10 @@ class CanListeners:
         self._skipped_s: dict[int, float] = {}  # the same for frames of earlier cycles
         self._offsets_s: tuple[float, ...] = ()
 
+    def frame_s(self, length: int) -> float:
+        """Return the time of a frame with so many bytes on the wire, s."""
+        return self._frame_s[length]
+
     def attach(self, node: WiredNode) -> None:
         """Add a node to ``nodes``; it subscribes to identifiers by ``listen``."""
         self.nodes.append(node)

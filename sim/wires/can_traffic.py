@@ -24,11 +24,11 @@ class WiredNode(Protocol):
 class SyncFollower(ABC):
     """A device that answers SYNC.
 
-    ``plain``: the next SYNC needs only one TPDO, ``sample`` under ``sample_id``; if that is ``stale``, the result of
-    ``take_sample``.
+    ``plain``: the next SYNC needs only one TPDO, ``sample`` under ``sample_id``, which takes ``sample_s`` on the wire;
+    if that is ``stale``, the result of ``take_sample``.
     """
 
-    __slots__ = ("plain", "sample", "sample_id", "stale", "take_sample")
+    __slots__ = ("plain", "sample", "sample_id", "sample_s", "stale", "take_sample")
 
     def __init__(self, take_sample: Callable[[], bytes]) -> None:
         """Begin not ``plain``: the device answers by ``on_sync``."""
@@ -36,6 +36,7 @@ class SyncFollower(ABC):
         self.stale = True
         self.sample = b""
         self.sample_id = 0
+        self.sample_s = 0.0
         self.take_sample = take_sample
 
     @abstractmethod

@@ -10,7 +10,9 @@ from __future__ import annotations
 
 from bisect import bisect_right, insort
 from collections import deque
+from itertools import compress
 from math import inf
+from operator import is_not
 from typing import Final
 
 from drivers.canopen.objects import SYNC_ID
@@ -18,6 +20,8 @@ from drivers.ports import BusLost, CanFrame, CanWatcher, Unwatch, add_watcher
 from sim.wires.can_listeners import CanListeners
 from sim.wires.can_traffic import Beat, frame_bits
 
+_PLACES: Final = range(2048)
+"""Places in a cycle: it has a frame of each identifier of 11 bits at most."""
 _LOAD_MARK_S: Final = 0.1
 """Resolution in s of the one-second bus load."""
 
@@ -103,11 +107,10 @@ class CanWire(CanListeners):
         changed: list[int] = []
         known = taken is not None and (can_ids is self._cycle_ids or can_ids == self._cycle_ids)
         if taken is not None and known and payloads is not taken:
-            for place, data in enumerate(payloads):
-                if data is not taken[place]:
-                    if len(data) != len(taken[place]):
-                        known = False  # other lengths, other times
-                    changed.append(place)
+            changed.extend(compress(_PLACES, map(is_not, payloads, taken)))
+            for i in changed:
+                if len(payloads[i]) != len(taken[i]):
+                    known = False  # other lengths, other times
         if not known:
             self._remember(can_ids, payloads)  # before a listener may ask to forget it
             for can_id, data in zip(can_ids, payloads, strict=True):
@@ -238,13 +241,15 @@ class CanWire(CanListeners):
 
     def _answer(self, t: float) -> None:
         """Let every device answer a SYNC that arrived at ``t`` s; the lowest identifier is first."""
-        inbox, frame_s = self._inbox, self._frame_s
-        quick = self.connected and not self.watchers
-        arrival, occupied_s = self._busy_s, self.occupied_s
+        if self.watchers or not self.connected:
+            for follower in self._followers:
+                follower.on_sync(t)
+            return
+        inbox, arrival, occupied_s = self._inbox, self._busy_s, self.occupied_s
         for follower in self._followers:
-            if not (quick and follower.plain):
+            if not follower.plain:
                 self._busy_s, self.occupied_s = arrival, occupied_s
-                left = follower.on_sync(t, quick)
+                left = follower.on_sync(t, True)
                 arrival, occupied_s = self._busy_s, self.occupied_s
                 if not left:
                     continue
@@ -252,7 +257,7 @@ class CanWire(CanListeners):
             if follower.stale:
                 take = follower.take_sample  # called as a method it is looked up anew (CPython 3.11)
                 data = take()
-            length_s = frame_s[len(data)]
+            length_s = follower.sample_s
             arrival += length_s
             occupied_s += length_s
             inbox.append((arrival, follower.sample_id, data))
