@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import struct
 from collections.abc import Callable
+from math import floor
 from typing import Final
 
 from drivers import cia402
@@ -16,8 +17,11 @@ from drivers.cia402 import Goal, State
 _RPDO1: Final = struct.Struct("<Hi").pack
 _RPDO1_INVERTER: Final = struct.Struct("<Hh").pack
 _INF: Final = math.inf
+_MOST: Final = math.nextafter(math.inf, 0.0)     # limits are finite, so no target beyond them is missed
 _I32_MAX: Final = 0x7FFF_FFFF
 _IO_MAX: Final = 0xFFFF_FFFF
+_RETARGETED: Final = 2
+"""Value of ``dirty`` while nothing but the target is new: every other change sets it to True."""
 
 # Members bound once: a look-up on the enum class costs several times as much in every scan (CPython 3.11).
 _DISABLED: Final = Goal.DISABLED
@@ -44,8 +48,8 @@ class AxisCommand(CanNode):
 
     __slots__ = ("_at_rest", "_goal", "_halt", "_high", "_homing", "_homing_start", "_low", "_motion_bits",
                  "_new_set_point", "_outputs", "_pack", "_per_unit", "_position_mode", "_raw", "_remote_bit",
-                 "_resetting", "_rpdo", "_set_point", "_target", "_target_counts", "aimed", "config", "homing_scans",
-                 "inhibited", "news", "state", "statusword")
+                 "_resetting", "_rpdo", "_set_point", "_target", "_target_counts", "_word", "aimed", "config",
+                 "homing_scans", "inhibited", "news", "state", "statusword")
 
     def __init__(self, config: AxisConfig) -> None:
         super().__init__(config.name, config.node_id, config.heartbeat_s, config.digital_io)
@@ -58,7 +62,8 @@ class AxisCommand(CanNode):
         self._per_unit = config.position_increments if self._position_mode else config.velocity_increments
         reach = _I32_MAX / self._per_unit
         limits = config.software_limits if self._position_mode else (-config.max_speed, config.max_speed)
-        self._low, self._high = limits or (-reach, reach)
+        low, high = limits or (-reach, reach)
+        self._low, self._high = max(low, -_MOST), min(high, _MOST)
         self.clear_commands()
 
     def clear_commands(self) -> None:
@@ -84,6 +89,7 @@ class AxisCommand(CanNode):
         self._homing = False
         self._homing_start = False
         self._rpdo: bytes | None = None
+        self._word: int = -1             # controlword of the last RPDO1 if that only adds the target, -1 if not
         self.dirty = True
 
     @property
@@ -103,18 +109,18 @@ class AxisCommand(CanNode):
         """Set ``target``; an unchanged value costs a comparison (compare ``aimed`` first to save even the call)."""
         if value == self.aimed:
             return
-        if not -_INF < value < _INF:
-            raise ValueError(f"{self.config.name}: target {value} is not a number")
-        self.aimed = value
-        if value < self._low:
-            value = self._low
-        elif value > self._high:
-            value = self._high
+        aimed = value
+        if not self._low <= value <= self._high:
+            if not -_INF < value < _INF:
+                raise ValueError(f"{self.config.name}: target {value} is not a number")
+            value = self._low if value < self._low else self._high
+        self.aimed = aimed
         self._target = value
-        counts = math.floor(self._target * self._per_unit + 0.5)
+        counts = floor(value * self._per_unit + 0.5)
         if counts != self._target_counts:
             self._target_counts = counts
-            self.dirty = True
+            if not self.dirty:
+                self.dirty = _RETARGETED
 
     @property
     def goal(self) -> Goal:
@@ -169,7 +175,11 @@ class AxisCommand(CanNode):
 
     def emit(self, sync: bool) -> bytes | None:
         """Return RPDO1 for this scan, None while there is nothing to command; ``sync``: a SYNC follows."""
-        if self.dirty:
+        if self.dirty == _RETARGETED and self._word >= 0:
+            self.dirty = False
+            pack = self._pack  # an attribute that is called as a method is looked up anew (CPython 3.11)
+            self._rpdo = pack(self._word, self._target_counts)
+        elif self.dirty:
             self._compose()
         rpdo = self._rpdo
         if self._resetting and sync:        # a synchronous RPDO acts at the SYNC: the drive has seen the edge
@@ -217,6 +227,7 @@ class AxisCommand(CanNode):
     def _compose(self) -> None:
         """Compose RPDO1 from the goal, the target and the last statusword."""
         self.dirty = False
+        self._word = -1
         if not self.connected:
             self._rpdo = None
             return
@@ -248,7 +259,8 @@ class AxisCommand(CanNode):
             return _RPDO1(word, self._raw if self._position_mode else 0)
         if not self._position_mode:
             self._at_rest = False
-            return self._pack(word | self._motion_bits, self._target_counts)
+            self._word = word = word | self._motion_bits
+            return self._pack(word, self._target_counts)
         if self._at_rest:
             self._at_rest = False
             self._new_set_point = False

@@ -19,10 +19,7 @@ from drivers.drive_settings import DrivePlan
 
 # Layouts (drivers.canopen.pdo): statusword, velocity or position, torque; an inverter's velocity has 16 bits.
 _TPDO1: Final = struct.Struct("<Hih").unpack
-_TPDO1_SIZE: Final = 8
 _INVERTER_UNPACK: Final = struct.Struct("<Hhh").unpack
-_INVERTER_SIZE: Final = 6
-_NO_TORQUE_SIZE: Final = 4
 _IO_PACK: Final = struct.Struct("<I").pack
 _IO_UNPACK: Final = struct.Struct("<I").unpack
 _IO_SIZE: Final = 4
@@ -63,7 +60,7 @@ class ServoAxis(AxisCommand):
     The master calls the methods ``on_...``, ``emit...``, ``check_heartbeat`` and ``holds``.
     """
 
-    __slots__ = ("_coarse", "_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "_size", "_unpack",
+    __slots__ = ("_coarse", "_nm_per_mille", "_outputs_again_s", "_outputs_sent", "_raw_per_unit", "_unpack",
                  "actual", "changed_s", "diagnosis", "emergencies_dropped", "emergency", "emergency_log", "homed",
                  "identity", "inputs", "inputs_stamp_s", "machine_late", "outputs_unanswered", "parameters", "plan",
                  "rebooted", "stands", "torque_nm")
@@ -74,11 +71,9 @@ class ServoAxis(AxisCommand):
         self._raw_per_unit = config.position_increments if by_position else config.velocity_increments
         self._nm_per_mille = config.rated_torque_nm / 1000.0 / config.drive.units.torque
         self._coarse = False
-        self._size: int = _TPDO1_SIZE
         self._unpack: Callable[[bytes], tuple[int, int, int]] = _TPDO1
         if config.drive.inverter:
             torque = self._coarse = config.drive.torque
-            self._size = _INVERTER_SIZE if torque else _NO_TORQUE_SIZE
             self._unpack = _INVERTER_UNPACK if torque else _no_torque
             self._nm_per_mille = self._nm_per_mille if torque else math.nan
         self.diagnosis: Diagnosis | None = None
@@ -157,11 +152,12 @@ class ServoAxis(AxisCommand):
         """Decode a TPDO1 that arrived at ``t``; one of a wrong length is counted and ignored."""
         if not self.connected:
             return
-        if len(data) != self._size:
+        unpack = self._unpack  # an attribute that is called as a method is looked up anew (CPython 3.11)
+        try:
+            fields: tuple[int, int, int] = unpack(data)
+        except struct.error:
             self.malformed += 1
             return
-        unpack = self._unpack  # an attribute that is called as a method is looked up anew (CPython 3.11)
-        fields: tuple[int, int, int] = unpack(data)
         statusword, raw, torque = fields
         if statusword != self.statusword:
             self.take_statusword(statusword)

@@ -83,6 +83,7 @@ class CanMaster:
         node_id = node.node_id
         if node_id == self.node_id or node_id in self._by_node:
             raise ValueError(f"{node.name}: node id {node_id} is taken")
+        node.place = len(self._nodes)
         self._nodes.append(node)
         self._commands.append(None)
         if node.has_outputs:
@@ -141,15 +142,20 @@ class CanMaster:
                 port.send(node.rpdo2_id, outputs, now)
         changed = sync is not self._cycle_syncs
         commands = self._commands
-        for i, node in enumerate(self._nodes):
+        for node in self._nodes:
             if node.dirty:
                 changed = True
-                before, command = commands[i], node.emit(sync)
-                commands[i] = command
+                place = node.place
+                before, command = commands[place], node.emit(sync)
+                commands[place] = command
                 if before is None or command is None:
                     self._cycle_ids = ()  # another node takes part, or one less
         if changed:
-            self._compose(sync)
+            # Unchanged payloads stay the same object.
+            payloads = tuple(filter(None, commands))
+            self._payloads = (*payloads, b"") if sync else payloads
+            if not self._cycle_ids or sync is not self._cycle_syncs:
+                self._compose(sync)
         if not self.withhold_setpoints:
             port.send_cycle(self._cycle_ids, self._payloads, now)
         elif sync:
@@ -160,14 +166,11 @@ class CanMaster:
             self._serve(port, now)
 
     def _compose(self, sync: bool) -> None:
-        """Put the commands of all nodes, and SYNC, into the cycle; unchanged payloads stay the same object."""
-        payloads = tuple(filter(None, self._commands))
-        self._payloads = (*payloads, b"") if sync else payloads
-        if not self._cycle_ids or sync is not self._cycle_syncs:
-            self._cycle_syncs = sync
-            commanded = zip(self._nodes, self._commands, strict=True)
-            can_ids = [node.rpdo1_id for node, command in commanded if command is not None]
-            self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
+        """Set the identifiers of the cycle: those of all nodes with a command, and SYNC."""
+        self._cycle_syncs = sync
+        commanded = zip(self._nodes, self._commands, strict=True)
+        can_ids = [node.rpdo1_id for node, command in commanded if command is not None]
+        self._cycle_ids = (*can_ids, _SYNC_ID) if sync else tuple(can_ids)
 
     def service(self, port: CanPort, now: float) -> None:
         """Send our heartbeat when due, continue the conversations, and notice nodes whose heartbeat stopped."""

@@ -16,11 +16,13 @@ class CanNode:
     heartbeat. ``lost``: the heartbeat stopped, or the node booted while in use; this stays until the next connect.
     ``stamp_s`` is the arrival of its last TPDO1, -inf before the first; bytes equal to ``tpdo1_data`` renew the stamp
     and are not decoded. ``dirty``: its RPDO1 has to be composed anew. ``has_outputs``: the master asks for its RPDO2 in
-    every scan. ``refused`` is the reason why the node cannot be used, None if it can.
+    every scan. ``place``: its place among the nodes of its master. ``refused`` is the reason why the node cannot be
+    used, None if it can.
     """
 
     __slots__ = ("booted", "connected", "dirty", "has_outputs", "heartbeat", "lost", "malformed", "name", "nmt_state",
-                 "node_id", "online", "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "tpdo1_data", "usual_heartbeat")
+                 "node_id", "online", "place", "refused", "rpdo1_id", "rpdo2_id", "stamp_s", "tpdo1_data",
+                 "usual_heartbeat")
 
     def __init__(self, name: str, node_id: int, heartbeat_s: float, has_outputs: bool = False) -> None:
         """Know nothing of the node yet; ``heartbeat_s`` is the period of its heartbeat."""
@@ -38,8 +40,9 @@ class CanNode:
         self.connected = False
         self.online = False
         self.lost = False
-        self.dirty = False
+        self.dirty: int = False
         self.malformed: int = 0
+        self.place: int = 0
         self.refused: str | None = None
 
     def emit(self, sync: bool) -> bytes | None:
