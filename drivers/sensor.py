@@ -104,7 +104,8 @@ class Sensor(Device):
     def take(self, block: int, data: bytes, t: float) -> None:
         """Update the readings from the registers of a block; they are as old as the oldest block."""
         read = self._reads[block]
-        found: tuple[Any, ...] = read.unpack(data)  # whole numbers, and floats of f32
+        unpack = read.unpack  # an attribute that is called as a method is looked up anew (CPython 3.11)
+        found: tuple[Any, ...] = unpack(data)  # whole numbers, and floats of f32
         if read.cell and self._in_one:
             # A load cell, which is read in every scan: its four channels without a loop.
             x, y, z, m, status = found

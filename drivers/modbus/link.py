@@ -15,7 +15,7 @@ from drivers.modbus import codec
 from drivers.modbus.answers import AnswerKind, ReplySoFar, SerialEar, numbered, tcp_answer
 from drivers.modbus.line import LineType
 from drivers.modbus.request import Owner, Request, Station
-from drivers.modbus.schedule import BUSY_S, MISSES_TO_LOSE, POLL_S, PROBE_S, Schedule
+from drivers.modbus.schedule import BUSY_S, EARLY_S, MISSES_TO_LOSE, POLL_S, PROBE_S, Schedule
 from drivers.ports import BusLost, LineFraming, LinePort, Parity, RenewablePort
 from drivers.profiles.model import Timing
 
@@ -50,8 +50,7 @@ class ModbusLink(LineType):
         """Reason of the last reconnection (TCP)."""
         self.scan_s = inf
         """Time between scans, s. If the exchange of an every-scan read takes longer, the next one begins at once."""
-        self._doubt = ""
-        self._sent = b""
+        self._doubt, self._sent = "", b""
         self.ear = SerialEar(False if self.socket else None)
 
     # requests of the drivers -----------------------------------------------------------------------------------
@@ -135,23 +134,13 @@ class ModbusLink(LineType):
         if self._doubt:
             self._begin_anew(port, now)
         schedule = self._schedule
-        hurried = schedule.slowest_s > self.scan_s
-        reads_only = self.ear.hears_itself is None
-        if now < self._quiet_s - _TINY_S and (reads_only or now >= schedule.wants_s):
-            self.deadline = self._quiet_s if hurried else max(self._quiet_s, schedule.latest())
-            self.wants_s = self._quiet_s - _TINY_S
-            return
-        request = schedule.choose(now, scan or hurried, reads_only) if now >= schedule.wants_s else None
-        if request is None and reads_only and scan:
-            request = self._contact(now)
-        if request is None:
-            self.deadline = schedule.latest_s
-            self.wants_s = -inf if reads_only else schedule.wants_s
-            return
-        self._send(request, port, now)
-
-    def _send(self, request: Request, port: LinePort, now: float) -> None:
-        """Begin a transaction."""
+        request = schedule.steady
+        # Nearly every scan: its one read is due and nothing else, as ``Schedule.choose`` would find.
+        if (request is None or not scan or now < self._quiet_s - _TINY_S
+                or not request.due_s <= now + EARLY_S < schedule.soonest_s):
+            request = self._choose(now, scan)
+            if request is None:
+                return
         frame = request.frame
         if self.socket:
             self._transaction = self._transaction % 0xFFFF + 1
@@ -161,19 +150,32 @@ class ModbusLink(LineType):
         port.write(frame, now)
         request.sent_s = now
         if request.writes:
-            request.fresh = False
-            request.sent_values = request.values
-            request.echo = request.confirmation
-            request.due_s = request.wish_s = inf  # until its reply, or newer values
+            schedule.written(request)
         request.station.counters.requests += 1
         self._active = request
         self._give_up_s = give_up_s = now + request.timeout_s
-        self._backlog_s = backlog_s = -inf if self._schedule.slowest_s > self.scan_s else self._schedule.latest_s
+        self._backlog_s = backlog_s = -inf if schedule.slowest_s > self.scan_s else schedule.latest_s
         if backlog_s < give_up_s:
             self._wait(now)
         else:
             self.deadline = give_up_s
             self.wants_s = give_up_s - _TINY_S
+
+    def _choose(self, now: float, scan: bool) -> Request | None:
+        """Return the request to send at ``now``; if there is none, set ``deadline`` and return None."""
+        schedule = self._schedule
+        hurried, reads_only = schedule.slowest_s > self.scan_s, self.ear.hears_itself is None
+        if now < self._quiet_s - _TINY_S and (reads_only or now >= schedule.wants_s):
+            self.deadline = self._quiet_s if hurried else max(self._quiet_s, schedule.latest())
+            self.wants_s = self._quiet_s - _TINY_S
+            return None
+        request = schedule.choose(now, scan or hurried, reads_only) if now >= schedule.wants_s else None
+        if request is None and reads_only and scan:
+            request = self._contact(now)
+        if request is None:
+            self.deadline = schedule.latest_s
+            self.wants_s = -inf if reads_only else schedule.wants_s
+        return request
 
     def _contact(self, now: float) -> Request | None:
         """Return a read, due before a write, whose reply shows whether the adapter echoes; None if none is needed."""
@@ -235,25 +237,23 @@ class ModbusLink(LineType):
             self._quiet_s = quiet_s
         station = request.station
         station.counters.replies += 1
-        station.misses = 0
-        request.misses = 0
+        station.misses = request.misses = 0
         station.is_lost = False
         schedule = self._schedule
         if not station.reply.measured:
             station.reply.note(max(0.0, t - request.sent_s - request.wire_s))
             if station.reply.measured:
-                self._retimed(station)
-        schedule.succeeded(request, t)
+                self.measured(station)
+                schedule.look_again()
+        if request is schedule.steady:  # due again with the next scan
+            request.due_s, request.wish_s = request.sent_s, inf
+        else:
+            schedule.succeeded(request, t)
         self.wants_s = schedule.wants_s
         latest_s = schedule.latest_s
         self.deadline = latest_s if latest_s > quiet_s else quiet_s
         # A late tick must not make a reading look newer than the time-out allows.
         station.owner.received(request, data, t if t < self._give_up_s else self._give_up_s)
-
-    def _retimed(self, station: Station) -> None:
-        """Apply what is known of a station's reply times."""
-        self.measured(station)
-        self._schedule.look_again()
 
     def _time_out(self, request: Request, now: float) -> None:
         """Give a request up, and keep the line silent: its reply may still come.
@@ -317,8 +317,7 @@ class ModbusLink(LineType):
             self._schedule.disable(request)
             self._schedule.look_again()
             if station.refused is None:
-                text = codec.EXCEPTION_TEXTS[code]
-                station.refused = f"exception {code} ({text}) on {request.describe()}"
+                station.refused = f"exception {code} ({codec.EXCEPTION_TEXTS[code]}) on {request.describe()}"
         elif code in codec.DEVICE_GONE:
             self._end(t + self.gap_s)
             station.misses = MISSES_TO_LOSE
@@ -347,4 +346,5 @@ class ModbusLink(LineType):
         if t - suspect.sent_s <= station.longest_s:
             # The line is slower than measured, but within the limit: wait longer for the next reply.
             station.reply.note(t - suspect.sent_s - suspect.wire_s)
-            self._retimed(station)
+            self.measured(station)
+            self._schedule.look_again()

@@ -21,7 +21,7 @@ SLACK_S: Final = 0.06
 """A periodic read waits this long for a regular scan: scans at 20 Hz serve the slow line without ticks of its own."""
 
 _TINY_S: Final = 1e-9
-_EARLY_S: Final = 1e-3
+EARLY_S: Final = 1e-3
 """A request due within this time is sent now: the next scan would be later."""
 
 
@@ -29,16 +29,16 @@ class Schedule:
     """The requests of one line. Of the due requests, the one that has waited longest is sent first; of two that have
     waited as long, the one enabled first.
 
-    ``wants_s``: there is nothing to choose before it (s). ``latest_s``: the time at which the first request not under
-    way has waited as long as it may.
+    ``wants_s``: there is nothing to choose before it (s). ``soonest_s``: the time at which the first request that waits
+    for no scan falls due. ``latest_s``: the time at which the first request not under way has waited as long as it may.
     """
 
     def __init__(self) -> None:
         """Begin with no request."""
         self._requests: list[Request] = []  # enabled requests, in the order of enabling
-        self._soonest_s = self.latest_s = self.wants_s = -inf
+        self.soonest_s = self.latest_s = self.wants_s = -inf
         self._with_scans = False
-        self._steady: Request | None = None
+        self.steady: Request | None = None
         """The only read that goes out with every scan, while nothing has changed since all requests were looked at."""
         self.slowest_s = 0.0
         """The longest usual exchange among the reads that go out with every scan, s."""
@@ -80,8 +80,8 @@ class Schedule:
 
     def look_again(self) -> None:
         """Forget the time of the next request after a change."""
-        self._soonest_s = self.wants_s = -inf
-        self._steady = None
+        self.soonest_s = self.wants_s = -inf
+        self.steady = None
 
     def choose(self, now: float, scan: bool, reads_only: bool = False) -> Request | None:
         """Return the request to send at ``now``; reads of period 0 go out with a ``scan`` only.
@@ -89,16 +89,16 @@ class Schedule:
         ``reads_only``: writes wait, whatever is due.
         The same pass finds when the others fall due.
         """
-        limit = now + _EARLY_S
-        steady = self._steady
+        limit = now + EARLY_S
+        steady = self.steady
         # Nearly every scan: the others are not due, and all that was found of them stays.
-        if steady is not None and scan and steady.due_s <= limit < self._soonest_s:
+        if steady is not None and scan and steady.due_s <= limit < self.soonest_s:
             return steady
-        if self._soonest_s == -inf:
+        if self.soonest_s == -inf:
             self.slowest_s = max((one.expected_s for one in self._requests if one.period_s == 0.0), default=0.0)
             with_scans = [each for each in self._requests if each.period_s == 0.0 and not each.attempts]
             self._with_scans = bool(with_scans)
-            self._steady = with_scans[0] if len(with_scans) == 1 and not with_scans[0].writes else None
+            self.steady = with_scans[0] if len(with_scans) == 1 and not with_scans[0].writes else None
         chosen: Request | None = None
         rank = soonest = latest = inf
         for request in self._requests:
@@ -119,22 +119,29 @@ class Schedule:
                 soonest = due
             if request.wish_s < latest:
                 latest = request.wish_s
-        self._soonest_s = soonest
+        self.soonest_s = soonest
         self.latest_s = latest
-        self.wants_s = -inf if self._with_scans else soonest - _EARLY_S - _TINY_S
+        self.wants_s = -inf if self._with_scans else soonest - EARLY_S - _TINY_S
         return chosen
 
     def write_due(self, now: float) -> Request | None:
         """Return the first write that is due."""
-        return next((one for one in self._requests if one.writes and one.due_s <= now + _EARLY_S), None)
+        return next((one for one in self._requests if one.writes and one.due_s <= now + EARLY_S), None)
 
     def latest(self) -> float:
         """Return the time at which the first request has waited as long as it may."""
         return min((request.wish_s for request in self._requests), default=inf)
 
+    def written(self, request: Request) -> None:
+        """Note that a write was sent: it is not due again until its reply comes, or newer values do."""
+        request.fresh = False
+        request.sent_values = request.values
+        request.echo = request.confirmation
+        request.due_s = request.wish_s = inf
+
     def succeeded(self, request: Request, t: float) -> None:
         """Set the next due time of a request that was answered at ``t``: on its grid, unless it has fallen behind."""
-        if request is self._steady:
+        if request is self.steady:
             request.due_s, request.wish_s = request.sent_s, inf
             return
         if request.attempts or request.fresh or not request.enabled:
@@ -150,10 +157,10 @@ class Schedule:
         request.wish_s = wish = due + request.slack_s
         if wish < self.latest_s:
             self.latest_s = wish
-        if due < self._soonest_s and period > 0.0:
-            self._soonest_s = due
+        if due < self.soonest_s and period > 0.0:
+            self.soonest_s = due
             if not self._with_scans:
-                self.wants_s = due - _EARLY_S - _TINY_S
+                self.wants_s = due - EARLY_S - _TINY_S
 
     def failed(self, request: Request, t: float) -> None:
         """Set the time of the next attempt of a request without a good reply."""

@@ -258,7 +258,8 @@ class CellSlave(SensorSlave):
         if not (-lx < cx < lx and -ly < cy < ly and -lz < cz < lz and -lm < cm < lm):
             return self._encode(self._shown[0], (*forces, 0.0))
         self.dither = phase
-        self._shown[0].data = data = self._pack(cx, cy, cz, cm, self.status_bits)
+        pack = self._pack  # an attribute that is called as a method is looked up anew (CPython 3.11)
+        self._shown[0].data = data = pack(cx, cy, cz, cm, self.status_bits)
         return data
 
 
