@@ -29,6 +29,7 @@ _ENABLED: Final = Goal.ENABLED
 _QUICK_STOP: Final = Goal.QUICK_STOP
 _FREE: Final = Goal.FREE
 _OPERATING: Final = State.OPERATION_ENABLED
+_TARGET_REACHED: Final = cia402.TARGET_REACHED
 
 _STOPPED_BY_ITSELF: Final = frozenset(
     (State.OPERATION_ENABLED, State.QUICK_STOP_ACTIVE, State.FAULT_REACTION, State.FAULT))
@@ -164,9 +165,9 @@ class AxisCommand(CanNode):
         In position mode the bit counts only for the present target. A velocity has no
         handshake: for two scans after a change the bit still belongs to the target before.
         """
-        current = not self._position_mode or (
-            not self._new_set_point and self._set_point == self._target_counts)
-        return current and not self._at_rest and self.statusword & cia402.TARGET_REACHED != 0
+        if self._at_rest or not self.statusword & _TARGET_REACHED:
+            return False
+        return not self._position_mode or (not self._new_set_point and self._set_point == self._target_counts)
 
     @property
     def remote(self) -> bool:

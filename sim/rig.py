@@ -159,16 +159,38 @@ class SimRig:
     def advance(self, now: float) -> None:
         """Advance everything to ``now`` (rig s); a step shorter than a millisecond waits for the next one."""
         now -= self.leapt_s
-        start = self.now_s
-        elapsed = now - start
+        t0 = self.now_s
+        elapsed = now - t0
         if elapsed < _SHORTEST_S:
             return
-        if elapsed <= LONGEST_STEP_S:
-            self._step(start, now)
-            return
-        steps = 1 + floor(elapsed / LONGEST_STEP_S)
-        for i in range(1, steps + 1):
-            self._step(self.now_s, now if i == steps else start + elapsed * i / steps)
+        ends: tuple[float, ...] = (now,) if elapsed <= LONGEST_STEP_S else _cut(t0, now)
+        for t1 in ends:
+            self.now_s = t1
+            still = True
+            for drive in self._drives:
+                axis = drive.axis
+                if drive.due_s <= t1:
+                    drive.advance(t0, t1)
+                elif drive.watching:
+                    drive.move(t0, t1)
+                else:
+                    drive.now_s = t1
+                    if axis.still:
+                        continue
+                    if axis.settled and not axis.bounded:  # as nearly always: what its step does then, without the call
+                        axis.position += axis.value * (t1 - t0)
+                    else:
+                        axis.step(t1 - t0)
+                    drive.pdos.stale = True
+                if not axis.still:
+                    still = False
+            for node in self.nodes:
+                node.advance(t0, t1)
+            for device in self._timed:
+                if device.due_s <= t1:
+                    device.advance(t0, t1)
+            self.follow(t1, still)
+            t0 = t1
 
     # leaps -----------------------------------------------------------------------------------------------------
 
@@ -220,32 +242,12 @@ class SimRig:
         for sensor in self._dithered:
             sensor.dither = 0
 
-    def _step(self, t0: float, t1: float) -> None:
-        self.now_s = t1
-        still = True
-        for drive in self._drives:
-            axis = drive.axis
-            if drive.due_s <= t1:
-                drive.advance(t0, t1)
-            elif drive.watching:
-                drive.move(t0, t1)
-            else:
-                drive.now_s = t1
-                if axis.still:
-                    continue
-                if axis.settled and not axis.bounded:  # as nearly always: what its step does then, without the call
-                    axis.position += axis.value * (t1 - t0)
-                else:
-                    axis.step(t1 - t0)
-                drive.pdos.stale = True
-            if not axis.still:
-                still = False
-        for node in self.nodes:
-            node.advance(t0, t1)
-        for device in self._timed:
-            if device.due_s <= t1:
-                device.advance(t0, t1)
-        self.follow(t1, still)
+
+def _cut(start: float, now: float) -> tuple[float, ...]:
+    """Return the ends of equal steps from ``start`` to ``now`` s, none longer than the longest."""
+    elapsed = now - start
+    steps = 1 + floor(elapsed / LONGEST_STEP_S)
+    return (*(start + elapsed * i / steps for i in range(1, steps)), now)
 
 
 def title_of(device: str) -> str:

@@ -111,8 +111,7 @@ class CanMaster:
 
     def feed(self, frames: list[CanFrame], now: float) -> None:
         """Take the frames that arrived up to ``now``, oldest first."""
-        tpdo1, heartbeats = self._tpdo1, self._heartbeats
-        talking = bool(self._dialogues)
+        tpdo1, heartbeats, dialogues = self._tpdo1, self._heartbeats, self._dialogues
         for t, can_id, data in frames:
             node = tpdo1.get(can_id)
             if node is not None:
@@ -122,7 +121,7 @@ class CanMaster:
                     node.on_tpdo1(t, data)
                 continue
             node = heartbeats.get(can_id)
-            if node is not None and data == node.usual_heartbeat and not talking:
+            if node is not None and data == node.usual_heartbeat and not dialogues:
                 monitor = node.heartbeat
                 monitor.heard_s = t
                 monitor.due = t + monitor.timeout_s
