@@ -191,11 +191,13 @@ class HeatLoop:
         """Return the hub setpoint in degC, recomputed once every ``loop.period_s``.
 
         ``loss_ratio`` is the steady hub-surface difference per kelvin of surface above ambient: the rubber's
-        resistance times the surface's loss conductance (dimensionless).
+        resistance times the surface's loss conductance (dimensionless). A target that moves within ``integral_band_k``
+        keeps the integral: the thermometer's bias and the friction heat that it stands for are still there.
         """
         if target_c != self.target_c:
+            if not abs(target_c - self.target_c) <= loop.integral_band_k:
+                self.integral_k = 0.0
             self.target_c = target_c
-            self.integral_k = 0.0
             self.due_s = now
         if now < self.due_s or not isfinite(surface_c):
             return self.hub_setpoint_c

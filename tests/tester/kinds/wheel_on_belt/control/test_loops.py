@@ -151,3 +151,20 @@ def test_the_integral_removes_a_lasting_error_and_is_bounded(rig: RigConfig) -> 
     values = [loop.update(t * heat.period_s, 40.0, 39.5, 23.0, 0.8, heat) for t in range(20_000)]
     assert values[100] > values[0]
     assert values[-1] <= 40.0 + 17.0 * 0.8 + heat.outer_gain * 0.5 + heat.integral_limit_k + 1e-9
+
+
+def test_a_target_that_moves_a_little_keeps_what_the_integral_has_learned(rig: RigConfig) -> None:
+    loop, heat = HeatLoop(), rig.loops.heat
+    learned = [loop.update(t * heat.period_s, 39.0, 39.5, 23.0, 0.8, heat) for t in range(600)][-1]
+    moved = loop.update(600 * heat.period_s, 39.3, 39.8, 23.0, 0.8, heat)
+    assert moved == pytest.approx(learned + 0.3 * 1.8, abs=0.01)
+
+
+def test_a_target_far_away_forgets_it(rig: RigConfig) -> None:
+    loop, heat = HeatLoop(), rig.loops.heat
+    for t in range(600):
+        loop.update(t * heat.period_s, 39.0, 39.5, 23.0, 0.8, heat)
+    far_c = 39.1 + heat.integral_band_k
+    assert loop.update(600 * heat.period_s, far_c, far_c, 23.0, 0.8, heat) == HeatLoop().update(
+        0.0, far_c, far_c, 23.0, 0.8, heat
+    )
