@@ -186,13 +186,22 @@ class HeatLoop:
     due_s: float = float("-inf")
 
     def update(
-        self, now: float, target_c: float, surface_c: float, ambient_c: float, loss_ratio: float, loop: HeatLoopConfig
+        self,
+        now: float,
+        target_c: float,
+        surface_c: float,
+        ambient_c: float,
+        loss_ratio: float,
+        loop: HeatLoopConfig,
+        *,
+        touching: bool = True,
     ) -> float:
         """Return the hub setpoint in degC, recomputed once every ``loop.period_s``.
 
         ``loss_ratio`` is the steady hub-surface difference per kelvin of surface above ambient: the rubber's
         resistance times the surface's loss conductance (dimensionless). A target that moves within ``integral_band_k``
         keeps the integral: the thermometer's bias and the friction heat that it stands for are still there.
+        A lifted wheel, not ``touching``, leaves it alone: its error tells nothing of rolling.
         """
         if target_c != self.target_c:
             if not abs(target_c - self.target_c) <= loop.integral_band_k:
@@ -203,7 +212,7 @@ class HeatLoop:
             return self.hub_setpoint_c
         self.due_s = now + loop.period_s
         error = target_c - surface_c
-        if abs(error) < loop.integral_band_k:
+        if touching and abs(error) < loop.integral_band_k:
             self.integral_k += loop.outer_gain * error * loop.period_s / loop.outer_integral_s
             self.integral_k = min(max(self.integral_k, -loop.integral_limit_k), loop.integral_limit_k)
         steady = target_c + max(0.0, target_c - ambient_c) * loss_ratio

@@ -132,8 +132,10 @@ class WheelControl(WheelStops):
             out.hub_c = least_c
         elif not demand.freeze_heat:
             target = min(demand.surface_c, self.bounds.surface_c)
-            ratio = self.loss_ratios[1 if state.load.in_contact else 0]
-            hub_c = state.heat.update(now, target, readings.surface_c, self._ambient_c, ratio, self._heat_loop)
+            touching = state.load.in_contact
+            ratio, loop = self.loss_ratios[1 if touching else 0], self._heat_loop
+            air_c = self._ambient_c
+            hub_c = state.heat.update(now, target, readings.surface_c, air_c, ratio, loop, touching=touching)
             # In warmer air the same surface needs a cooler hub.
             out.hub_c = min(hub_c, self.bounds.hub_c - self.view.warmer_k * self.loss_ratios[1])
         setpoint_c = out.hub_c if out.heat else least_c

@@ -168,3 +168,9 @@ def test_a_target_far_away_forgets_it(rig: RigConfig) -> None:
     assert loop.update(600 * heat.period_s, far_c, far_c, 23.0, 0.8, heat) == HeatLoop().update(
         0.0, far_c, far_c, 23.0, 0.8, heat
     )
+
+
+def test_a_lifted_wheel_teaches_the_integral_nothing(rig: RigConfig) -> None:
+    loop, heat = HeatLoop(), rig.loops.heat
+    values = [loop.update(t * heat.period_s, 39.0, 41.0, 23.0, 0.4, heat, touching=False) for t in range(360)]
+    assert values[-1] == values[0]
