@@ -92,6 +92,9 @@ class EstimateConstants:
     waits_least: float = 0.45
     waits_most: float = 2.1
     """Range of the waits for temperatures over their expected time, in 95 % of runs: a thermometer off by +-1 K."""
+    lift_s: float = 540.0
+    """Longest wait in contact before the wheel is lifted to cool, 180 s, and longest cooling lifted, 360 s: near
+    ambient a thermometer that reads high makes this of a wait that is short in most runs."""
     unknown_mu: float = 1.0
     """Coefficient of a compound without a friction model."""
 

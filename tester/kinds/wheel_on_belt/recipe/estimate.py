@@ -182,7 +182,11 @@ class WheelEstimator(Estimator):
         up. Replacement repeats are independent (Poisson). A precision's repeats depend on the run's own deviation.
         """
         seconds, waits_s, scattered = 0.0, down_s, 0.0
-        for estimate in steps:
+        lifted_s, heated = 0.0, False
+        for step, estimate in zip(plan.steps, steps, strict=True):
+            if heated and isinstance(step, WheelCondition):
+                lifted_s += self.order.lift_later_s(step.setpoint, estimate)
+            heated = isinstance(step, Heat)
             took_s = estimate.seconds
             seconds += took_s
             waits_s += estimate.waiting_s
@@ -191,7 +195,8 @@ class WheelEstimator(Estimator):
         sooner_s, later_s = _precision_range_s(plan, steps)
         seconds += down_s
         low = seconds - (1.0 - self.constants.waits_least) * waits_s - sooner_s
-        return low, seconds + (self.constants.waits_most - 1.0) * waits_s + later_s + 2.0 * math.sqrt(scattered)
+        later_s += (self.constants.waits_most - 1.0) * waits_s + lifted_s
+        return low, seconds + later_s + 2.0 * math.sqrt(scattered)
 
     def s_percent(self, compound: str) -> float:
         """Return the expected standard deviation between repeats, per cent of the coefficient."""

@@ -147,6 +147,18 @@ class OrderCosts:
         before.rolled = heat_w <= 0.0
         return estimate._replace(seconds=estimate.seconds + waiting_s, waiting_s=estimate.waiting_s + waiting_s)
 
+    def lift_later_s(self, sp: Setpoint, estimate: StepEstimate) -> float:
+        """Return how much later, s, than by ``waits_most`` the first condition after heating may end near ambient.
+
+        The settling is expected from the temperature's rise over ambient, as long as it grows with it; where that is
+        short, the wheel may still be lifted once.
+        """
+        c = self.constants
+        longest_k = c.settle_k[c.settle_s.index(max(c.settle_s))]
+        if estimate.heat_w <= 0.0 or sp.number("temperature") - self.ambient_c >= longest_k:
+            return 0.0
+        return max(c.lift_s - (c.waits_most - 1.0) * estimate.waiting_s, 0.0)
+
     def _settle_s(self, from_c: float, to_c: float) -> float:
         """Return the seconds in contact from reaching a temperature until it is stable."""
         c = self.constants

@@ -86,6 +86,19 @@ def test_the_range_holds_the_estimate_and_widens_with_what_waits() -> None:
     assert high > (CONSTANTS.waits_most - 1.0) * waits > 0.0
 
 
+def test_near_ambient_the_range_holds_one_lift_to_cool() -> None:
+    # Of 6 runs of 2# at 28 degC one waits 600 s longer than the others: its thermometer reads 0.6 K high.
+    _, figures = planned(at("27 degC", "100 N", "100 mm/s"))
+    assert figures.rig_seconds_high - figures.rig_seconds > CONSTANTS.lift_s
+
+
+def test_where_settling_is_long_the_range_has_it_already() -> None:
+    _, figures = planned(at("40 degC", "100 N", "100 mm/s"))
+    waits = sum(one.waiting_s for one in figures.steps)
+    high = figures.rig_seconds_high - figures.rig_seconds
+    assert high < CONSTANTS.waits_most * waits
+
+
 def test_each_specimen_of_a_simulated_run_starts_on_a_cold_rig() -> None:
     both = PREPARED.replace('- compound: "1#"', '- compound: "1#"\n  - compound: "1#"\n    note: again')
     text = both.replace("[40 degC, 25 degC]", "85 degC")
