@@ -125,7 +125,8 @@ def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Play
     shown = stored.rows[0]
     assert replace(row, cells=shown.cells) == shown
     assert row.cells[-4:] == shown.cells[-4:]  # the figures: which axes have a column is for the whole run to say
-    assert [one.repeat for one in found] == [1, 2, 3] and all(one.trace for one in found)
+    repeats = [one.repeat for one in found]
+    assert len(found) >= 3 and repeats == list(range(1, len(found) + 1)) and all(one.trace for one in found)
 
     async def act(app: ReplayApp, press: Press) -> None:
         await press("f5", "tab", "enter")

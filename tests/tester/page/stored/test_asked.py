@@ -61,7 +61,7 @@ def test_repeats_agree_with_the_table_of_repeats(runs: Path, run: Path) -> None:
     page = ask(runs, "condition", run=run.name, n=1)
     assert [one["mu"] for one in page["repeats"]] == pytest.approx([float(row["mu_as_measured"]) for row in rows])
     assert [one["from_s"] for one in page["repeats"]] == pytest.approx([float(row["started_s"]) for row in rows])
-    assert [one["state"] for one in page["repeats"]] == ["valid", "valid", "valid"]
+    assert len(rows) >= 3 and [one["state"] for one in page["repeats"]] == ["valid"] * len(rows)
 
 
 def test_runs_are_those_of_tester_runs(runs: Path, run: Path) -> None:
@@ -152,7 +152,8 @@ def test_an_exclusion_is_on_record_with_the_page_that_asked(own: Path) -> None:
 
 
 def test_a_whole_condition_is_excluded(own: Path) -> None:
-    assert ask(own.parent, "exclude", run=own.name, n=1, reason="wrong wheel")["repeats"] == 3
+    repeats = ask(own.parent, "condition", run=own.name, n=1)["repeats"]
+    assert ask(own.parent, "exclude", run=own.name, n=1, reason="wrong wheel")["repeats"] == len(repeats)
     assert ask(own.parent, "run", run=own.name)["conditions"][0]["state"] == "excluded"
 
 

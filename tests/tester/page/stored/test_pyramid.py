@@ -25,8 +25,8 @@ from tester.store.run_reader import RunReader
 
 @pytest.fixture
 def own(run: Path, tmp_path: Path) -> Path:
-    """Return a copy of the run."""
-    return Path(shutil.copytree(run, tmp_path / run.name))
+    """Return a copy of the run, without the file that another test may have left beside its record."""
+    return Path(shutil.copytree(run, tmp_path / run.name, ignore=shutil.ignore_patterns("*.pyramid")))
 
 
 def made(folder: Path, before: Pyramid | None = None, *, lasting: bool = True) -> Pyramid:
