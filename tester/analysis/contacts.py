@@ -87,12 +87,17 @@ class PressedContact:
 
 
 class ContactFinder:
-    """Finds the contacts in the blocks of a record, one after the other, in bounded memory."""
+    """Finds the contacts in the blocks of a record, one after the other, in bounded memory.
+
+    Where a record is cut into blocks depends on the computer's speed; what is found does not.
+    """
 
     def __init__(self, roles: Roles, mounted_s: Iterable[float]) -> None:
         """``roles``: with ``depth`` and ``core``; ``mounted_s``: times at which new rubber was mounted, s."""
         self.roles = roles
-        self.contacts: list[PressedContact] = []
+        self._contacts: list[PressedContact] = []
+        self._held: Array | None = None
+        """The samples of the half second that the last block ended in."""
         self._mounted_s = sorted(mounted_s)
         self._averages_n = [0.0] * DECADES
         self._further_n = [0.0] * DECADES
@@ -109,6 +114,24 @@ class ContactFinder:
         roles = self.roles
         names = (TIME, roles.normal, roles.depth, roles.temperature, roles.core, roles.sliding, KEY)
         table = np.stack([np.asarray(columns[name]) for name in names])
+        if self._held is not None:
+            table = np.concatenate((self._held, table), axis=1)
+        over = np.flatnonzero(np.diff(table[0] // FOLD_S)) + 1
+        end = int(over[-1]) if len(over) else 0
+        self._held = table[:, end:]
+        self._add_parts(table[:, :end])
+
+    def ended(self) -> list[PressedContact]:
+        """Return the contacts: no block follows."""
+        if self._held is not None:
+            self._add_parts(self._held)
+            self._held = None
+        return self._contacts
+
+    def _add_parts(self, table: Array) -> None:
+        """Add samples, the channels in rows, between gaps."""
+        import numpy as np
+
         for part in np.split(table, np.flatnonzero(np.diff(table[0]) > GAP_S) + 1, axis=1):
             if part.size:
                 self._add(*part)
@@ -200,7 +223,7 @@ class ContactFinder:
         if not (force_n >= LOADED_N and isfinite(depth_mm) and isfinite(body_c)):
             return
         if not contact.loaded:
-            self.contacts.append(contact)
+            self._contacts.append(contact)
         contact.loaded.append(
             Loaded(now_s - contact.at_s, force_n, depth_mm - contact.touch_mm, body_c, self._remembered(),
                    self._slid_n_m, key)

@@ -51,7 +51,7 @@ def stiffness_rows(results: RunResults, reader: RunReader) -> list[StiffnessRow]
     piece_of = {repeat.key: repeat.piece for repeat in attempts}
     compound_of = {piece.piece: piece.compound for piece in results.pieces}
     contacts: dict[str, list[PressedContact]] = {}
-    for contact in finder.contacts:
+    for contact in finder.ended():
         compound = compound_of.get(piece_of.get(contact.repeat_key, 0), "")
         if compound:
             contacts.setdefault(compound, []).append(contact)

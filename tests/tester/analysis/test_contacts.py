@@ -18,7 +18,7 @@ def found(
     finder = ContactFinder(ROLES, mounted_s)
     for begin in range(0, len(columns[TIME]), block):
         finder.add({name: values[begin : begin + block] for name, values in columns.items()})
-    return finder.contacts
+    return finder.ended()
 
 
 def delayed(rig: Pressed, from_s: float, by_s: float) -> dict[str, list[float]]:
@@ -45,14 +45,9 @@ def test_each_touch_begins_a_contact_where_the_force_passes_ten_newtons(twice: P
 
 
 @pytest.mark.parametrize("block", [7, 50, 333])
-def test_blocks_of_any_length_give_the_same_touches(twice: Pressed, block: int) -> None:
+def test_blocks_of_any_length_give_the_same_contacts(twice: Pressed, block: int) -> None:
     whole, parts = found(twice.columns), found(twice.columns, block)
-    assert [(one.at_s, one.touch_mm, one.repeat_key) for one in parts] == [
-        (one.at_s, one.touch_mm, one.repeat_key) for one in whole
-    ]
-    last, same = whole[-1].loaded[-1], parts[-1].loaded[-1]
-    assert same.remembered.once_n == pytest.approx(last.remembered.once_n, rel=0.02)
-    assert same.slid_n_m == pytest.approx(last.slid_n_m, rel=0.05)
+    assert len(whole) == 2 and parts == whole
 
 
 def test_rubber_remembers_a_load_and_forgets_it(twice: Pressed) -> None:

@@ -17,7 +17,7 @@ SEEDS = range(12)
 def contacts_of(rig: Pressed) -> list[PressedContact]:
     finder = ContactFinder(ROLES, ())
     finder.add(rig.columns)
-    return finder.contacts
+    return finder.ended()
 
 
 def stiffness(contacts: list[PressedContact]) -> RubberStiffness:
