@@ -118,6 +118,10 @@ g       look for runs again.
 """
 
 
+_WIDEST = 300
+"""Greatest width of a cell: all flags at once, 267 characters, are not cut."""
+
+
 class TextTable(DataTable[Text]):
     """A table of plain text, never interpreted as markup."""
 
@@ -250,7 +254,7 @@ class ResultsView(View):
         again = self.stored is not None and self.stored.folder == stored.folder
         at, axis = (table.cursor_row, self.query_one(PlotPanel).axis) if again else (0, 0)
         self.stored = stored
-        table.fill(stored.header, [[clean(cell, 80) for cell in row.cells] for row in stored.rows])
+        table.fill(stored.header, [[fit(clean(cell), _WIDEST) for cell in row.cells] for row in stored.rows])
         table.border_title = Text(f"{clean(stored.name)}: {clean(stored.recipe)}, {clean(stored.status)}")
         table.border_subtitle = Text(f"all: {clean(stored.common)}" if stored.common else "")
         table.move_cursor(row=at)

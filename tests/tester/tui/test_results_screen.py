@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from textual.widgets import Input
 
+from tester.analysis.flags import FLAGS
 from tester.base.lock import RUN_LOCK, ExclusiveUse
 from tester.kinds.wheel_on_belt.image.axes import AXES
 from tester.results.run_files import write_all
@@ -69,6 +70,20 @@ def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
 
 def test_a_condition_without_a_series_leaves_every_sign_as_it_is() -> None:
     assert [point.sign for point in points(STORED, AXES["slip_velocity"], ROW)] == ["1", "1", "1", "2", "1"]
+
+
+def test_flags_are_shown_whole_and_a_longer_cell_ends_in_an_ellipsis(tmp_path: Path) -> None:
+    flags = ", ".join(FLAGS)
+    long = replace(STORED, header=("flags",), rows=(replace(ROW, cells=(flags,)), replace(ROW, cells=("x" * 400,))))
+
+    async def act(on: Stage) -> None:
+        await on.pilot.press("f5")
+        view = on.app.screen_stack[0].query_one(ResultsView)
+        view.open(long)
+        cells = [str(view.conditions_table.get_row_at(row)[0]) for row in (0, 1)]
+        assert cells == [flags, "x" * 299 + "…"]
+
+    play(act, tmp_path)
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
