@@ -200,7 +200,7 @@ class HeatLoop:
 
         ``loss_ratio`` is the steady hub-surface difference per kelvin of surface above ambient: the rubber's
         resistance times the surface's loss conductance (dimensionless). A target that moves within ``integral_band_k``
-        keeps the integral: the thermometer's bias and the friction heat that it stands for are still there.
+        keeps the integral, which holds the thermometer's bias and the friction heat.
         A lifted wheel, not ``touching``, leaves it alone: its error tells nothing of rolling.
         """
         if target_c != self.target_c:

@@ -21,6 +21,7 @@ from tester.kinds.wheel_on_belt.procedures.burst_state import FEW_REVOLUTIONS, B
 from tester.kinds.wheel_on_belt.procedures.motions import Lift, Load, TakeTare, Turn, Yaw
 from tester.kinds.wheel_on_belt.procedures.thermal_steps import roll
 from tester.kinds.wheel_on_belt.procedures.zero_check import deeper
+from tester.kinds.wheel_on_belt.recipe.constants import COOL_LIFTED_S, LIFT_TO_COOL_S
 from tester.kinds.wheel_on_belt.recipe.plan_steps import WheelCondition
 from tester.machine.measured import Ending
 from tester.machine.motions import Power, Sequence, Settle
@@ -35,10 +36,6 @@ sample, some seconds later (the cell's zero moves by 0.1 N/K with its temperatur
 """
 OFFSET_BEYOND_BAND_K: Final = 1.5
 """Greatest distance of a burst's start below the band, K [A]: it warms up before the first sample counts."""
-LIFT_TO_COOL_S: Final = 180.0
-"""If rolling has not brought the temperature back after this time, the wheel is lifted to cool, s [A]."""
-COOL_AT_MOST_S: Final = 360.0
-"""Longest cooling lifted before rolling is tried again, s [A]."""
 EMPTY_BURSTS: Final = 3
 """Number of bursts in a row without a whole turn, started as low as possible, that end a condition [A]."""
 
@@ -177,7 +174,7 @@ class MeasureRepeat(CentredBursts):
         self._demand_heat(ctx)
         self.moves.step(ctx)
         surface, target = ctx.gates.surface.now_c, self.setpoint.temperature_c
-        if surface <= target - self.offset_k or ctx.now - self.cooling_since_s > COOL_AT_MOST_S:
+        if surface <= target - self.offset_k or ctx.now - self.cooling_since_s > COOL_LIFTED_S:
             self._roll()
 
     def _slip_in(self) -> None:

@@ -6,6 +6,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Final
+
+LIFT_TO_COOL_S: Final = 180.0
+"""If rolling has not brought the temperature back after this time, the wheel is lifted to cool, s [A]."""
+COOL_LIFTED_S: Final = 360.0
+"""Longest cooling lifted before rolling is tried again, s [A]."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -92,9 +98,9 @@ class EstimateConstants:
     waits_least: float = 0.45
     waits_most: float = 2.1
     """Range of the waits for temperatures over their expected time, in 95 % of runs: a thermometer off by +-1 K."""
-    lift_s: float = 540.0
-    """Longest wait in contact before the wheel is lifted to cool, 180 s, and longest cooling lifted, 360 s: near
-    ambient a thermometer that reads high makes this of a wait that is short in most runs."""
+    lift_s: float = LIFT_TO_COOL_S + COOL_LIFTED_S
+    """One wait in contact and one cooling lifted: near ambient a thermometer that reads high makes this of a wait that
+    is short in most runs."""
     unknown_mu: float = 1.0
     """Coefficient of a compound without a friction model."""
 
