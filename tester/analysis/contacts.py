@@ -7,6 +7,7 @@ remembers, and the load times distance since the touch.
 
 from __future__ import annotations
 
+from array import array
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 from math import isfinite, nan
@@ -33,7 +34,8 @@ GAP_S: Final = 5.0
 """Without samples for longer than this a contact is over, s: an interruption."""
 PER_CONTACT: Final = 60
 """Most averages of a contact that are used; they are spread evenly over the logarithm of time."""
-DECADES: Final = 5
+OVER_S: Final = (1.0, 10.0, 100.0, 1e3, 1e4)
+"""Times over which rubber remembers loads, s."""
 
 
 class Remembered(NamedTuple):
@@ -47,18 +49,26 @@ class Remembered(NamedTuple):
     twice_n: float = 0.0
 
 
-class Loaded(NamedTuple):
-    """An average of a contact. Times in s since the touch, depth in mm beyond the touch, loads in N."""
+class Averages(NamedTuple):
+    """Averages of a contact, arrays of shape (n) in order of time. Times in s since the touch, depth in mm beyond the
+    touch, loads in N.
+    """
 
-    since_s: float
-    force_n: float
-    deeper_mm: float
-    body_c: float
+    since_s: Array
+    force_n: Array
+    deeper_mm: Array
+    body_c: Array
     """Mean temperature of the rubber."""
-    remembered: Remembered
-    slid_n_m: float
+    once_n: Array
+    twice_n: Array
+    """What the rubber remembers (``Remembered``)."""
+    slid_n_m: Array
     """Load times distance since the touch."""
-    repeat_key: int
+    repeat_key: Array
+
+    def at(self, places: Places | slice) -> Averages:
+        """Return some of them."""
+        return Averages(*(one[places] for one in self))
 
 
 @dataclass(slots=True)
@@ -70,20 +80,31 @@ class PressedContact:
     touch_n: float
     body_c: float
     remembered: Remembered
-    loaded: list[Loaded] = field(default_factory=list[Loaded])
+    rows: array[float] = field(default_factory=lambda: array("d"))
+    """The averages, one after the other: a day's run has hundreds of thousands."""
+
+    @property
+    def loaded(self) -> Averages:
+        """Return the averages."""
+        import numpy as np
+
+        return Averages(*np.frombuffer(self.rows).reshape(-1, len(Averages._fields)).T)
 
     @property
     def repeat_key(self) -> int:
         """Return the first repeat in it, 0 for none."""
-        return next((one.repeat_key for one in self.loaded if one.repeat_key), 0)
+        return int(next((key for key in self.loaded.repeat_key if key), 0))
 
-    def thinned(self) -> list[Loaded]:
+    def thinned(self) -> Averages:
         """Return at most ``PER_CONTACT`` averages, evenly spread over the logarithm of time."""
-        count = len(self.loaded)
+        import numpy as np
+
+        loaded = self.loaded
+        count = len(loaded.since_s)
         if count <= PER_CONTACT:
-            return self.loaded
+            return loaded
         places = {round(count ** (step / (PER_CONTACT - 1.0))) - 1 for step in range(PER_CONTACT)}
-        return [self.loaded[place] for place in sorted(places)]
+        return loaded.at(np.array(sorted(places)))
 
 
 class ContactFinder:
@@ -99,8 +120,8 @@ class ContactFinder:
         self._held: Array | None = None
         """The samples of the half second that the last block ended in."""
         self._mounted_s = sorted(mounted_s)
-        self._averages_n = [0.0] * DECADES
-        self._further_n = [0.0] * DECADES
+        self._averages_n = [0.0] * len(OVER_S)
+        self._further_n = [0.0] * len(OVER_S)
         self._last_s = nan
         self._closed = True
         """Whether the contact was closed, or never known to be open."""
@@ -155,18 +176,17 @@ class ContactFinder:
         means = [np.add.reduceat(one, edges) / counts for one in (force, depth, 0.5 * (surface + core))]
         least = np.minimum.reduceat(np.where(np.isfinite(force), force, -1.0), edges)
         begun = set(touches.tolist())
-        for place, (edge, key) in enumerate(zip(edges.tolist(), keys[edges].tolist(), strict=True)):
-            now_s = float(at_s[edge])
+        averages = (one.tolist() for one in (edges, at_s[edges], *sums, least, *means, keys[edges]))
+        for edge, now_s, for_s, sum_n_s, slid_n_m, least_n, *mean, key in zip(*averages, strict=True):
             self._mount(now_s)
             if edge in begun:
                 body_c = float(0.5 * (surface[edge] + core[edge]))
                 self._touch(now_s, float(depth[edge]), float(force[edge]), body_c)
-            self._fold(float(sums[0][place]), float(sums[1][place]))
-            self._slid_n_m += float(sums[2][place])
-            if not least[place] >= OPEN_N:
+            self._fold(for_s, sum_n_s)
+            self._slid_n_m += slid_n_m
+            if not least_n >= OPEN_N:
                 self._contact = None
-            force_n, depth_mm, body_c = (float(mean[place]) for mean in means)
-            self._take(now_s, force_n, depth_mm, body_c, int(key))
+            self._take(now_s, *mean, int(key))
 
     def _touches(self, force: Array, steps: Array) -> Places:
         """Return the places of the touches in a block."""
@@ -190,7 +210,7 @@ class ContactFinder:
         """Begin with new rubber, which remembers no load."""
         while self._mounted_s and now_s >= self._mounted_s[0]:
             self._mounted_s.pop(0)
-            self._averages_n, self._further_n = [0.0] * DECADES, [0.0] * DECADES
+            self._averages_n, self._further_n = [0.0] * len(OVER_S), [0.0] * len(OVER_S)
             self._contact = None
 
     def _touch(self, now_s: float, depth_mm: float, force_n: float, body_c: float) -> None:
@@ -203,14 +223,8 @@ class ContactFinder:
         """Bring the averages of the load up to date."""
         if not for_s > 0.0:
             return
-        mean_n, over_s = sum_n_s / for_s, 1.0
-        for decade in range(DECADES):
-            self._averages_n[decade] += (mean_n - self._averages_n[decade]) * for_s / (over_s + for_s)
-            over_s *= 10.0
-        remembered_n, over_s = sum(self._averages_n), 1.0
-        for decade in range(DECADES):
-            self._further_n[decade] += (remembered_n - self._further_n[decade]) * for_s / (over_s + for_s)
-            over_s *= 10.0
+        self._averages_n = _followed(self._averages_n, sum_n_s / for_s, for_s)
+        self._further_n = _followed(self._further_n, sum(self._averages_n), for_s)
 
     def _remembered(self) -> Remembered:
         return Remembered(sum(self._averages_n), sum(self._further_n))
@@ -222,9 +236,12 @@ class ContactFinder:
             return
         if not (force_n >= LOADED_N and isfinite(depth_mm) and isfinite(body_c)):
             return
-        if not contact.loaded:
+        if not contact.rows:
             self._contacts.append(contact)
-        contact.loaded.append(
-            Loaded(now_s - contact.at_s, force_n, depth_mm - contact.touch_mm, body_c, self._remembered(),
-                   self._slid_n_m, key)
-        )  # fmt: skip
+        since_s, deeper_mm = now_s - contact.at_s, depth_mm - contact.touch_mm
+        contact.rows.extend((since_s, force_n, deeper_mm, body_c, *self._remembered(), self._slid_n_m, key))
+
+
+def _followed(averages_n: Sequence[float], load_n: float, for_s: float) -> list[float]:
+    """Return averages after a load has acted for a time."""
+    return [n + (load_n - n) * for_s / (over_s + for_s) for n, over_s in zip(averages_n, OVER_S, strict=True)]

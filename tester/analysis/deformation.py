@@ -18,17 +18,17 @@ contact), with Student's t for as many contacts as exceed the parameters.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from math import hypot, isfinite, log, log10, sqrt
 from typing import TYPE_CHECKING, Final, NamedTuple
 
-from tester.analysis.contacts import Loaded, PressedContact
+from tester.analysis.contacts import Averages, PressedContact
 from tester.analysis.quantiles import t_quantile
 from tester.analysis.results import NAN
 
 if TYPE_CHECKING:
-    from tester.base.arrays import Array
+    from tester.base.arrays import Array, Places
 
 TREF_C: Final = 25.0
 STEPS: Final = 15
@@ -73,6 +73,13 @@ class WithU(NamedTuple):
     expanded: float = NAN
 
 
+class Part(NamedTuple):
+    """Some averages of a contact: their places."""
+
+    contact: PressedContact
+    places: Places
+
+
 @dataclass(frozen=True, slots=True)
 class Deformation:
     """The deformation at the load of a condition: loads in N, lengths in mm, with expanded uncertainties (95 %)."""
@@ -104,7 +111,7 @@ class RubberStiffness:
     """Standard deviation of the contacts about the fit."""
     coverage: float
 
-    def at(self, contacts: Sequence[Sequence[tuple[PressedContact, Loaded]]]) -> Deformation:
+    def at(self, parts: Sequence[Part]) -> Deformation:
         """Return the deformation at the averages of a condition, contact by contact.
 
         Load, temperature and depth are means over the same averages: a contact of which only a moment lies in the
@@ -112,36 +119,23 @@ class RubberStiffness:
         """
         import numpy as np
 
-        depths: list[float] = []
-        slopes: list[Array] = []
         x = np.array(self.parameters)
-        for pairs in contacts:
-            rows = _Rows.of([[one for _, one in pairs]], [pairs[0][0]])
-            whole = np.mean(rows.deeper_mm - rows.depth(x) + rows.pressed(x))
-            slopes.append(np.mean(_slopes(rows.pressed, x) - _slopes(rows.depth, x), axis=0))
-            depths.append(float(whole))
-        counts = np.array([len(pairs) for pairs in contacts], dtype=float)
-        shares = counts / counts.sum()
-        slope = shares @ np.array(slopes)
+        inside = [contact.loaded.at(places) for contact, places in parts]
+        rows = _Rows.of(inside, [contact for contact, _ in parts])
+        depth_mm = float(np.mean(rows.deeper_mm - rows.depth(x) + rows.pressed(x)))
+        slope = np.mean(_slopes(rows.pressed, x) - _slopes(rows.depth, x), axis=0)
         own_mm = sqrt(float(slope @ np.array(self.covariance) @ slope))
-        averages = [one for pairs in contacts for _, one in pairs]
+        shares = np.bincount(rows.contact) / len(rows.contact)
         u_mm = hypot(own_mm, self.scatter_mm * sqrt(float(shares @ shares)))
-        return Deformation(
-            len(contacts), _mean(one.force_n for one in averages), _mean(one.body_c for one in averages),
-            WithU(float(shares @ np.array(depths)), self.coverage * u_mm),
-        )  # fmt: skip
-
-
-def _mean(values: Iterable[float]) -> float:
-    listed = list(values)
-    return sum(listed) / len(listed)
+        load_n, body_c = float(np.mean(rows.force_n)), TREF_C + float(np.mean(rows.body_k))
+        return Deformation(len(parts), load_n, body_c, WithU(depth_mm, self.coverage * u_mm))
 
 
 @dataclass(frozen=True, slots=True)
 class _Rows:
     """Averages as arrays, and their touches (``0``)."""
 
-    contact: Array
+    contact: Places
     """Number of the contact."""
     force_n: Array
     deeper_mm: Array
@@ -155,16 +149,16 @@ class _Rows:
     touch_twice_n: Array
 
     @classmethod
-    def of(cls, loaded: Sequence[Sequence[Loaded]], contacts: Sequence[PressedContact]) -> _Rows:
+    def of(cls, loaded: Sequence[Averages], contacts: Sequence[PressedContact]) -> _Rows:
         import numpy as np
 
-        rows = [
-            (number, one.force_n, one.deeper_mm, one.body_c - TREF_C, *one.remembered, one.slid_n_m, contact.touch_n,
-             contact.body_c - TREF_C, *contact.remembered)
-            for number, (averages, contact) in enumerate(zip(loaded, contacts, strict=True))
-            for one in averages
-        ]  # fmt: skip
-        return cls(*np.array(rows, dtype=float).T)
+        counts = [len(averages.since_s) for averages in loaded]
+        joined = Averages(*(np.concatenate(values) for values in zip(*loaded, strict=True)))
+        touches = [(one.touch_n, one.body_c - TREF_C, *one.remembered) for one in contacts]
+        return cls(
+            np.repeat(np.arange(len(contacts)), counts), joined.force_n, joined.deeper_mm, joined.body_c - TREF_C,
+            joined.once_n, joined.twice_n, joined.slid_n_m, *np.repeat(np.array(touches), counts, axis=0).T,
+        )  # fmt: skip
 
     def pressed(self, x: Array) -> Array:
         """Return the whole depth at each average, mm: from rubber without a load, now or ever."""
@@ -205,7 +199,7 @@ class _CompoundFit:
 
         self.loaded = [contact.thinned() for contact in contacts]
         self.rows = _Rows.of(self.loaded, contacts)
-        self.number = self.rows.contact.astype(np.intp)
+        self.number = self.rows.contact
         counts: Array = np.bincount(self.number).astype(np.float64)
         self.weights: Array = 1.0 / np.sqrt(counts[self.number])
         self.values: Array = np.array([prior.value for prior in _PRIORS])
@@ -257,11 +251,11 @@ def stiffness_of(contacts: Sequence[PressedContact]) -> RubberStiffness | None:
     found = [WithU(float(value), float(own)) for value, own in zip(fit.x, spread, strict=True)]
     if not all(isfinite(one.value) and isfinite(one.expanded) for one in found):
         return None
-    body_c = [one.body_c for averages in fit.loaded for one in averages]
-    decades = max(log10(averages[-1].since_s / averages[0].since_s) for averages in fit.loaded)
+    span_k = float(np.ptp(fit.rows.body_k))
+    decades = max(log10(averages.since_s[-1] / averages.since_s[0]) for averages in fit.loaded)
     return RubberStiffness(
         len(contacts),
-        found[_SOFTENING] if max(body_c) - min(body_c) >= LEAST_SPAN_K else WithU(),
+        found[_SOFTENING] if span_k >= LEAST_SPAN_K else WithU(),
         found[_RELAXATION] if decades >= LEAST_DECADES else WithU(),
         found[_EXPONENT],
         tuple(fit.x.tolist()),
@@ -271,16 +265,16 @@ def stiffness_of(contacts: Sequence[PressedContact]) -> RubberStiffness | None:
     )
 
 
-def by_condition(
-    contacts: Sequence[PressedContact], condition_of: Mapping[int, int]
-) -> dict[int, list[list[tuple[PressedContact, Loaded]]]]:
+def by_condition(contacts: Sequence[PressedContact], condition_of: Mapping[int, int]) -> dict[int, list[Part]]:
     """Return the averages inside repeats, contact by contact, by condition; ``condition_of``: by the repeat's key."""
-    found: dict[int, list[list[tuple[PressedContact, Loaded]]]] = {}
+    import numpy as np
+
+    found: dict[int, list[Part]] = {}
     for contact in contacts:
-        inside: dict[int, list[tuple[PressedContact, Loaded]]] = {}
-        for one in contact.loaded:
-            if one.repeat_key in condition_of:
-                inside.setdefault(condition_of[one.repeat_key], []).append((contact, one))
-        for condition, pairs in inside.items():
-            found.setdefault(condition, []).append(pairs)
+        places: dict[int, list[int]] = {}
+        for place, key in enumerate(contact.loaded.repeat_key.tolist()):
+            if key in condition_of:
+                places.setdefault(condition_of[key], []).append(place)
+        for condition, inside in places.items():
+            found.setdefault(condition, []).append(Part(contact, np.array(inside)))
     return found

@@ -8,7 +8,7 @@ from statistics import fmean
 import pytest
 
 from tester.analysis.contacts import ContactFinder, PressedContact
-from tester.analysis.deformation import LEAST_CONTACTS, RubberStiffness, WithU, by_condition, stiffness_of
+from tester.analysis.deformation import LEAST_CONTACTS, Part, RubberStiffness, WithU, by_condition, stiffness_of
 from tests.tester.analysis.pressed_rubber import ROLES, Pressed, pressed
 
 SEEDS = range(12)
@@ -59,8 +59,9 @@ def test_the_deformation_at_each_load_and_temperature_is_found(
     for rig, contacts, rubber in judged:
         for repeat, inside in by_condition(contacts, {key: key for key in range(1, 25)}).items():
             found = rubber.at(inside)
-            ((contact, _), *_rest), *_more = inside
-            lost_n = fmean(0.03 * (one.remembered.once_n + 0.03 * one.remembered.twice_n) for _, one in inside[0])
+            contact, places = inside[0]
+            averages = contact.loaded.at(places)
+            lost_n = float((0.03 * (averages.once_n + 0.03 * averages.twice_n)).mean())
             truth = rig.true_depth_mm(found.load_n, found.body_c, lost_n)
             held.append(holds(found.depth_mm, truth))
             assert contact.repeat_key == repeat and found.contacts == 1
@@ -80,17 +81,16 @@ def test_a_contact_with_one_moment_in_a_condition_counts_for_no_more_than_that(
     judged: list[tuple[Pressed, list[PressedContact], RubberStiffness]],
 ) -> None:
     _, contacts, rubber = judged[0]
-    (pairs, *_), (lifting, *_) = (by_condition(contacts, {key: key}).get(key, []) for key in (1, 2))
-    alone = rubber.at([pairs])
-    both = rubber.at([pairs, lifting[:1]])
-    one = rubber.at([lifting[:1]])
-    share = 1.0 / (len(pairs) + 1)
+    (whole, *_), (other, *_) = (by_condition(contacts, {key: key}).get(key, []) for key in (1, 2))
+    moment = Part(other.contact, other.places[:1])
+    alone, both, one = (rubber.at(parts) for parts in ([whole], [whole, moment], [moment]))
+    share = 1.0 / (len(whole.places) + 1)
     for name in ("load_n", "body_c"):
         of = (getattr(found, name) for found in (alone, one, both))
         first, second, together = of
         assert together == pytest.approx((1.0 - share) * first + share * second)
     depth = (1.0 - share) * alone.depth_mm.value + share * one.depth_mm.value
-    assert both.depth_mm.value == pytest.approx(depth) and len(pairs) > 10
+    assert both.depth_mm.value == pytest.approx(depth) and len(whole.places) > 10
 
 
 def test_too_few_contacts_show_nothing() -> None:
