@@ -9,8 +9,10 @@ from tests.campaigns.agreement.facts import Facts
 from tests.campaigns.agreement.read_screens import done_by, moment, read_repeats, read_results, read_steps
 from tests.campaigns.agreement.record import Record
 
-_SIZE = (180, 70)
-"""Characters of the screen: wide enough for every column, high enough for every condition."""
+_SIZE = (260, 70)
+"""Characters of the screen: wide enough for every column and a row of seven flags (a narrower one is scrolled), high
+enough for every condition.
+"""
 _LISTED = 8
 """Repeats that the dialog lists at once, at least."""
 _WAIT_S = 60.0
