@@ -1,4 +1,4 @@
-"""`python -m tests.campaigns.screens [NAME ...] [--quick] [--list] [--captures DIR]`: what is asked of the screen.
+"""`python -m tests.campaigns.screens [NAME ...] [--sample] [--list] [--captures DIR]`: what is asked of the screen.
 
 Real terminals, real keys, the installed command, a service on the simulated rig. Prints a line a figure with its limit,
 and exits 1 where one misses.
@@ -22,7 +22,7 @@ def options(arguments: list[str] | None) -> argparse.Namespace:
     """Read the command line."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.screens", description="Measure the operator's screen.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="topics, all unless named: " + ", ".join(TOPICS))
-    parser.add_argument("--quick", action="store_true", help="the short form of each topic")
+    parser.add_argument("--sample", action="store_true", help="the short form of each topic")
     parser.add_argument("--list", action="store_true", help="name the topics and leave")
     parser.add_argument("--captures", type=Path, metavar="DIR", help="put what the terminals show into this folder")
     read = parser.parse_args(arguments)
@@ -62,7 +62,7 @@ def main(arguments: list[str] | None = None) -> int:
             topic = TOPICS[name]
             print(f"== {name}: {topic.title}", flush=True)
             seat = Seat(Path(temporary) / name, captures, topic.recipe)
-            missed += asyncio.run(measure(topic, seat, quick=read.quick))
+            missed += asyncio.run(measure(topic, seat, quick=read.sample))
     print(f"== {'every figure is kept' if not missed else f'{missed} missed'}")
     return 1 if missed else 0
 

@@ -12,13 +12,17 @@ from contextlib import asynccontextmanager, suppress
 from pathlib import Path
 
 from tester.base import clock
+from tester.base.who import who_here
 from tester.service.address import UnixAddress
 from tester.service.client import Client, LostError, NoServiceError
 from tester.service.commands import Stop
 from tester.service.protocol import Event
 from tester.service.state_view import StateView
+from tester.tui.host import ROLE
 from tests.campaigns.acceptance.bench import COMMAND, ROOT
 
+SCREEN = who_here(ROLE)
+"""What the service calls a screen that is opened here."""
 LOOK_S = 0.005
 """What is waited for is looked at this often, s."""
 END_S = 30.0
@@ -153,9 +157,13 @@ class Observer:
             await asyncio.sleep(LOOK_S / 5)
         raise NotSeenError(f"{what}: not within {within_s:g} s")
 
+    async def stop_by_screen(self, after_s: float, what: str) -> float:
+        """Wait for the STOP of a screen of this place and return when it came; raises NotSeenError."""
+        return await self.event(lambda event: event.text.startswith(f"stop by {SCREEN}"), after_s, what)
+
     async def controlled(self) -> None:
         """Wait until a screen has come and has control."""
-        await self.until(lambda state: state.clients.controller.startswith("tui "), "a screen that controls")
+        await self.until(lambda state: state.clients.controller == SCREEN, "a screen that controls")
 
     async def sliding(self) -> None:
         """Wait until the wheel slides under load."""

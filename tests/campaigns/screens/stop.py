@@ -44,8 +44,7 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
                     under_way = observer.state.mode != "OFFLINE"
                     pressed_s = screen.key(next(keys))
                     try:
-                        heard_s = await observer.event(lambda event: event.text.startswith("stop by tui"), pressed_s,
-                                                       "STOP at the service")  # fmt: skip
+                        heard_s = await observer.stop_by_screen(pressed_s, "STOP at the service")
                     except NotSeenError:
                         lost += 1
                         continue

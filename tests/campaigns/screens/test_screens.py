@@ -33,4 +33,4 @@ def test_an_unknown_topic_is_refused(capsys: pytest.CaptureFixture[str]) -> None
 @pytest.mark.skipif(not HAS_PTY, reason="needs pseudo-terminals")
 @pytest.mark.parametrize("name", TOPICS)
 def test_the_screen_keeps_what_is_asked(name: str) -> None:
-    assert screens.main([name, "--quick"]) == 0
+    assert screens.main([name, "--sample"]) == 0

@@ -49,8 +49,7 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
                 screen.reading(on=False)
                 with_s = await latest_s(observer, seconds)
                 pressed_s = screen.key("F12")
-                stopped_s = await observer.event(lambda event: event.text.startswith("stop by tui"), pressed_s,
-                                                 "STOP from the terminal that nobody reads")  # fmt: skip
+                stopped_s = await observer.stop_by_screen(pressed_s, "STOP from the unread terminal")
                 screen.forget()
                 screen.reading(on=True)
                 await screen.until("Friction", 10.0)
