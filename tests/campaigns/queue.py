@@ -1,8 +1,9 @@
-"""`python -m tests.campaigns.queue [--sample] [--schedules N] [--measure RUNS]`: random lives of a queue.
+"""`python -m tests.campaigns.queue [--sample] [--schedules N] [--twin N] [--measure RUNS]`: random lives of a queue.
 
 A life is a schedule of adds, moves, skips, drops, starts, stops, answers, alarms and changes of the rig, cut by kills
 and power cuts at any byte of the record. The service, its queue and the record are the real ones; the run is a fast
-fake, which begins, asks, waits for the answer, and ends as drawn. The ends of queues without disturbance are composed
+fake, which begins, asks, waits for the answer, and ends as drawn. ``--twin``: lives of `tester serve` with runs on the
+twin as well (``queue_twin``). The ends of queues without disturbance are composed
 of durations that were measured on the twin with recipes from which no constant of the prediction was drawn
 (``queue_measured``; ``--measure`` makes them anew).
 """
@@ -26,6 +27,7 @@ from tester.queue.view import view_of
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, holds
 from tests.campaigns.queue_life import Life
 from tests.campaigns.queue_measured import HELD_OUT, HOLD_OUT, Measured, in_worlds, measure, read
+from tests.campaigns.queue_twin import twin_lives
 from tests.tester.queue.made import UTC, item, queue_of
 
 SCHEDULES, SAMPLE = 1000, 60
@@ -132,11 +134,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} schedules instead of {SCHEDULES}")
     parser.add_argument("--schedules", type=int, default=0)
+    parser.add_argument("--twin", type=int, default=0, metavar="N", help="N schedules with runs on the twin, too")
     parser.add_argument("--measure", type=int, default=0, metavar="RUNS", help="measure durations on the twin first")
     read = parser.parse_args(arguments)
     if read.measure:
         measure(read.measure)
     found = [*lives(read.schedules or (SAMPLE if read.sample else SCHEDULES)), *ends(), *speed()]
+    found += twin_lives(read.twin) if read.twin else []
     found.append(at_least("figures", len(found), 13))
     for figure in found:
         print(figure)
