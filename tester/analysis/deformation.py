@@ -73,7 +73,7 @@ class WithU(NamedTuple):
     expanded: float = NAN
 
 
-class Part(NamedTuple):
+class PressedPart(NamedTuple):
     """Some averages of a contact: their places."""
 
     contact: PressedContact
@@ -111,7 +111,7 @@ class RubberStiffness:
     """Standard deviation of the contacts about the fit."""
     coverage: float
 
-    def at(self, parts: Sequence[Part]) -> Deformation:
+    def at(self, parts: Sequence[PressedPart]) -> Deformation:
         """Return the deformation at the averages of a condition, contact by contact.
 
         Load, temperature and depth are means over the same averages: a contact of which only a moment lies in the
@@ -265,16 +265,16 @@ def stiffness_of(contacts: Sequence[PressedContact]) -> RubberStiffness | None:
     )
 
 
-def by_condition(contacts: Sequence[PressedContact], condition_of: Mapping[int, int]) -> dict[int, list[Part]]:
+def by_condition(contacts: Sequence[PressedContact], condition_of: Mapping[int, int]) -> dict[int, list[PressedPart]]:
     """Return the averages inside repeats, contact by contact, by condition; ``condition_of``: by the repeat's key."""
     import numpy as np
 
-    found: dict[int, list[Part]] = {}
+    found: dict[int, list[PressedPart]] = {}
     for contact in contacts:
         places: dict[int, list[int]] = {}
         for place, key in enumerate(contact.loaded.repeat_key.tolist()):
             if key in condition_of:
                 places.setdefault(condition_of[key], []).append(place)
         for condition, inside in places.items():
-            found.setdefault(condition, []).append(Part(contact, np.array(inside)))
+            found.setdefault(condition, []).append(PressedPart(contact, np.array(inside)))
     return found

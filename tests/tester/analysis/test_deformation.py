@@ -8,7 +8,7 @@ from statistics import fmean
 import pytest
 
 from tester.analysis.contacts import ContactFinder, PressedContact
-from tester.analysis.deformation import LEAST_CONTACTS, Part, RubberStiffness, WithU, by_condition, stiffness_of
+from tester.analysis.deformation import LEAST_CONTACTS, PressedPart, RubberStiffness, WithU, by_condition, stiffness_of
 from tests.tester.analysis.pressed_rubber import ROLES, Pressed, pressed
 
 SEEDS = range(12)
@@ -82,7 +82,7 @@ def test_a_contact_with_one_moment_in_a_condition_counts_for_no_more_than_that(
 ) -> None:
     _, contacts, rubber = judged[0]
     (whole, *_), (other, *_) = (by_condition(contacts, {key: key}).get(key, []) for key in (1, 2))
-    moment = Part(other.contact, other.places[:1])
+    moment = PressedPart(other.contact, other.places[:1])
     alone, both, one = (rubber.at(parts) for parts in ([whole], [whole, moment], [moment]))
     share = 1.0 / (len(whole.places) + 1)
     for name in ("load_n", "body_c"):

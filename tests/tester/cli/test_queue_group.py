@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from datetime import datetime
 from pathlib import Path
 
 import pytest
@@ -43,7 +44,11 @@ def test_the_list_in_words_has_a_line_for_each_item(stored: list[str]) -> None:
     assert lines[-1].startswith("end ") and "if it starts now" in lines[-1]
 
 
-def test_a_queue_that_ends_before_the_window_exits_with_1(stored: list[str]) -> None:
+def test_a_queue_that_ends_before_the_window_does_exits_with_1(
+    stored: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    evening = datetime(2026, 7, 27, 17).astimezone().isoformat()  # in the last hours of the window it would fill it
+    monkeypatch.setattr("tester.base.clock.utc_now", lambda: evening)
     done = CliRunner().invoke(check, [*stored, "--from", "18:00", "--to", "08:00"], standalone_mode=False)
     assert done.return_value == 1
     assert "the queue is at its end" in done.output and "does not fill the window alone" in done.output
