@@ -177,16 +177,16 @@ class ContactFinder:
         least = np.minimum.reduceat(np.where(np.isfinite(force), force, -1.0), edges)
         begun = set(touches.tolist())
         averages = (one.tolist() for one in (edges, at_s[edges], *sums, least, *means, keys[edges]))
-        for edge, now_s, for_s, sum_n_s, slid_n_m, least_n, *mean, key in zip(*averages, strict=True):
+        for edge, now_s, for_s, sum_n_s, slid, least_n, force_n, depth_mm, body_c, key in zip(*averages, strict=True):
             self._mount(now_s)
             if edge in begun:
-                body_c = float(0.5 * (surface[edge] + core[edge]))
-                self._touch(now_s, float(depth[edge]), float(force[edge]), body_c)
+                touched_c = float(0.5 * (surface[edge] + core[edge]))
+                self._touch(now_s, float(depth[edge]), float(force[edge]), touched_c)
             self._fold(for_s, sum_n_s)
-            self._slid_n_m += slid_n_m
+            self._slid_n_m += slid
             if not least_n >= OPEN_N:
                 self._contact = None
-            self._take(now_s, *mean, int(key))
+            self._take(now_s, force_n, depth_mm, body_c, int(key))
 
     def _touches(self, force: Array, steps: Array) -> Places:
         """Return the places of the touches in a block."""
