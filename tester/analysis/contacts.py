@@ -66,7 +66,7 @@ class Averages(NamedTuple):
     """Load times distance since the touch."""
     repeat_key: Array
 
-    def at(self, places: Places | slice) -> Averages:
+    def at(self, places: Places) -> Averages:
         """Return some of them."""
         return Averages(*(one[places] for one in self))
 

@@ -25,7 +25,7 @@ from tester.queue.items import Needs, PersonAsk
 from tester.queue.predict import BETWEEN_S, PlannedItem, predicted
 from tester.queue.view import view_of
 from tests.campaigns.acceptance.figure import Figure, at_least, at_most, equal, holds
-from tests.campaigns.queue_life import Life
+from tests.campaigns.queue_life import Life, fault_figures
 from tests.campaigns.queue_measured import HELD_OUT, HOLD_OUT, Measured, in_worlds, measure, read
 from tests.campaigns.queue_twin import twin_lives
 from tests.tester.queue.made import UTC, item, queue_of
@@ -49,17 +49,10 @@ def lives(count: int) -> list[Figure]:
             misses += [f"seed {seed}: {miss}" for miss in life.misses]
             for name, number in life.counts.items():
                 totals[name] += number
-    for miss in misses[:20]:
-        print(f"     {miss}")
     words = ", ".join(f"{number:,} {name}" for name, number in totals.items())
-    kinds = {kind: sum(kind in miss for miss in misses) for kind in ("twice", "lost", "evidence", "reason")}
     return [
         holds(f"{count} schedules on a fast fake of the run", totals["runs"] > count // 2, words, "runs in them"),
-        equal("items that ran twice", kinds["twice"], 0),
-        equal("items lost", kinds["lost"], 0),
-        equal("starts without evidence or a person", kinds["evidence"], 0),
-        equal("waits without a reason", kinds["reason"], 0),
-        equal("other faults", len(misses) - sum(kinds.values()), 0),
+        *fault_figures(misses),
     ]
 
 

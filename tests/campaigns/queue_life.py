@@ -33,6 +33,7 @@ from tester.service.service_link import Order, Presence
 from tester.service.state_view import RunView
 from tester.store.disk import FreeRoom
 from tester.store.run_folders import RunStatus
+from tests.campaigns.acceptance.figure import Figure, equal
 from tests.tester.service.stage import Script
 from tests.tester.service.stage import Stage as ServiceStage
 
@@ -394,6 +395,20 @@ class InlineExecutor:
 
     def shutdown(self) -> None:
         """Do nothing: nothing waits."""
+
+
+def fault_figures(misses: list[str], where: str = "") -> list[Figure]:
+    """Print the first faults of many lives, and return the figures of each kind."""
+    for miss in misses[:20]:
+        print(f"     {miss}")
+    kinds = {kind: sum(kind in miss for miss in misses) for kind in ("twice", "lost", "evidence", "reason")}
+    return [
+        equal(f"{where}items that ran twice", kinds["twice"], 0),
+        equal(f"{where}items lost", kinds["lost"], 0),
+        equal(f"{where}starts without evidence or a person", kinds["evidence"], 0),
+        equal(f"{where}waits without a reason", kinds["reason"], 0),
+        equal(f"{where}other faults", len(misses) - sum(kinds.values()), 0),
+    ]
 
 
 def _roomy(room: FreeRoom) -> None:

@@ -26,7 +26,8 @@ from tester.service.client import Client, LostError, RefusedError
 from tester.service.commands import QueueAdd, QueueDrop, QueueMove, QueueSkip, QueueStart, RigAction, Stop
 from tester.store.run_folders import run_folders
 from tester.store.run_reader import RunReader
-from tests.campaigns.acceptance.figure import Figure, equal, holds
+from tests.campaigns.acceptance.figure import Figure, holds
+from tests.campaigns.queue_life import fault_figures
 from tests.campaigns.screens.seat import LOOK_S, Seat, installed
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
@@ -203,16 +204,9 @@ def twin_lives(count: int) -> list[Figure]:
             life.live()
             misses += [f"seed {seed}: {miss}" for miss in life.misses]
             totals += life.counts
-    for miss in misses[:20]:
-        print(f"     {miss}")
     shown = ("items", "runs", "kills", "kills in a run", "refused", "states")
     words = ", ".join(f"{totals[name]:,} {name}" for name in shown)
-    kinds = {kind: sum(kind in miss for miss in misses) for kind in ("twice", "lost", "evidence", "reason")}
     return [
         holds(f"{count} schedules on the twin, SIGKILL at random", totals["runs"] >= count, words, "runs in them"),
-        equal("on the twin: items that ran twice", kinds["twice"], 0),
-        equal("on the twin: items lost", kinds["lost"], 0),
-        equal("on the twin: starts without evidence or a person", kinds["evidence"], 0),
-        equal("on the twin: waits without a reason", kinds["reason"], 0),
-        equal("on the twin: other faults", len(misses) - sum(kinds.values()), 0),
+        *fault_figures(misses, "on the twin: "),
     ]
