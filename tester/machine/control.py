@@ -85,6 +85,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         mode = state.mode
         late_s = now - state.last_s - scan_s
         state.last_late_s = late_s if 0.0 < late_s < inf else 0.0
+        state.last_period_s = scan_s
         state.last_s = now
         if mode is _RUN:
             self.run_outputs(demand, readings, dt)
@@ -139,7 +140,7 @@ class Control(ModeCommands[StateT, ReadingsT, DemandT, InputsT]):
         if state.mode is not _IDLE:
             return f"the rig is in {state.mode.value}, not idle"
         state.last_s = now
-        state.last_late_s = 0.0
+        state.last_late_s = state.last_period_s = 0.0
         state.stop_requested = ""
         state.cooled = False
         state.stop.began_s = inf

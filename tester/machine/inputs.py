@@ -41,6 +41,8 @@ class ScanInputs:
     """Lateness of this scan beyond its period, s."""
     late_before_s: float = 0.0
     """Lateness of the previous scan beyond its period, s."""
+    slower_before_s: float = 0.0
+    """By how much the previous scan's period was longer than this one's, s; 0 if it was not."""
     mode_since_s: float = 0.0
     """Time since when the rig has been in its mode."""
     loaded: bool = True
@@ -97,6 +99,8 @@ class ScanInputs:
         self.last_s = last_s = state.last_s
         self.late_s = now_s - last_s - scan_s
         self.late_before_s = state.last_late_s
+        slower_s = state.last_period_s - scan_s
+        self.slower_before_s = slower_s if slower_s > 0.0 else 0.0
         self.mode_since_s = state.mode_since_s
         mode = state.mode
         self.stopped_s = self.lifting_s = now_s - state.stop.began_s

@@ -94,6 +94,8 @@ class ControlState(Generic[SetpointsT_co]):
         self.last_s = -inf
         self.last_late_s = 0.0
         """Lateness of the last scan beyond its period, s."""
+        self.last_period_s = 0.0
+        """Period before the last scan, s."""
         self.stop = StopProgress()
         self.stop_requested = ""
         self.unwanted_s = inf

@@ -43,7 +43,7 @@ def _bus_silent(v: Any) -> bool:
     allowed_s = p[SILENT_CAN_HEARTBEATS] * v.limits.heartbeat_s
     # Enabled drives answer every scan's SYNC; without power they only send their heartbeats.
     if r.drives_enabled:
-        scans_s = p[SILENT_CAN_SCANS] * v.scan_s
+        scans_s = p[SILENT_CAN_SCANS] * v.scan_s + v.slower_before_s
         allowed_s = scans_s if scans_s < allowed_s else allowed_s
     # A late scan has not received frames in the meantime ("scan late" judges that), and drives have not yet answered
     # the scan after it.
@@ -169,10 +169,11 @@ def drive_data_old(v: Any) -> bool:
 def drive_data_allowed_s(v: Any) -> float:
     """Return the greatest permitted age of the drives' data, s."""
     # Drives answer a scan's SYNC. The data seen in a scan answer the scan before, or, where that answer was lost, the
-    # one before that. So the lateness of these two scans adds to the data's age ("scan late" limits it).
+    # one before that. So the lateness of these two scans adds to the data's age ("scan late" limits it), and in the
+    # first fast scan after slow ones, so does the longer period.
     p = v.parameters
     late_s = v.late_before_s + (v.late_s if v.late_s > 0.0 else 0.0)
-    allowed = p[STALE_CAN_SCANS] * v.scan_s + late_s
+    allowed = p[STALE_CAN_SCANS] * v.scan_s + v.slower_before_s + late_s
     most = p[STALE_CAN_S]
     return allowed if allowed < most else most
 

@@ -28,32 +28,36 @@ PARAMETERS = {one: one.value for one in (STALE_CAN_SCANS, STALE_CAN_S, SILENT_CA
 SCANS = 20
 LATE = 10
 """The scan that comes late."""
+FAST = (PERIOD_S,) * SCANS
 
 
 def view(**values: Any) -> Any:
-    return SimpleNamespace(parameters=PARAMETERS, scan_s=PERIOD_S, **values)
+    return SimpleNamespace(**{"parameters": PARAMETERS, "scan_s": PERIOD_S, "slower_before_s": 0.0} | values)
 
 
-def tripped(row: Interlock, late_s: Sequence[float], lost: Collection[int] = ()) -> list[int]:
-    """Scan with each scan so much later than its period, the answers to some SYNCs lost; return where a row trips."""
+def tripped(
+    row: Interlock, late_s: Sequence[float], lost: Collection[int] = (), periods_s: Sequence[float] = FAST
+) -> list[int]:
+    """Scan after the given periods, each that much later; lose the answers to some SYNCs. Return where a row trips."""
     control, readings, demand = LampControl(), LampReadings(safety_chain=True, guard_closed=True), LampDemand()
     assert control.start(readings) == ""
     syncs: list[float] = []
     heard_s = -ANSWER_S
     found: list[int] = []
     now_s = 0.0
-    for number, late in enumerate(late_s):
-        now_s += PERIOD_S + late
+    for number, (late, period_s) in enumerate(zip(late_s, periods_s, strict=True)):
+        now_s += period_s + late
         for of, at_s in enumerate(syncs):
             if at_s + ANSWER_S <= now_s and of not in lost:
                 heard_s = at_s + ANSWER_S
         readings.now_s = now_s
-        control.step(demand, readings, PERIOD_S)
+        control.step(demand, readings, period_s)
         stamps = lambda at_s=heard_s: (at_s,)  # noqa: E731
         shown = SimpleNamespace(now_s=now_s, drive_stamps_s=stamps, can_heard_s=heard_s, drives_enabled=True)
         looked_at = view(
             readings=shown, demand=SimpleNamespace(enabled=True), limits=SimpleNamespace(heartbeat_s=0.05),
-            last_s=control.view.last_s, late_s=control.view.late_s, late_before_s=control.view.late_before_s,
+            scan_s=period_s, slower_before_s=control.view.slower_before_s, last_s=control.view.last_s,
+            late_s=control.view.late_s, late_before_s=control.view.late_before_s,
         )  # fmt: skip
         if row.holds(looked_at):
             found.append(number)
@@ -80,6 +84,18 @@ def test_two_answers_missing_in_a_row_trip_at_the_scan_that_misses_both(
     row: Interlock, late_s: float, first: int
 ) -> None:
     assert tripped(row, late_by(late_s), {first, first + 1}) == [first + 2]
+
+
+@pytest.mark.parametrize("row", [DRIVE_DATA_STALE, CAN_SILENT], ids=["drive data", "silence"])
+@pytest.mark.parametrize("late_s", [0.0, 0.004, 0.015])
+@pytest.mark.parametrize("slow_s", [0.02, 0.05])
+def test_the_first_fast_scans_after_slow_ones_bear_one_missing_answer_and_trip_on_two(
+    row: Interlock, late_s: float, slow_s: float
+) -> None:
+    periods_s = [slow_s if number < LATE else PERIOD_S for number in range(SCANS)]
+    for lost in range(LATE - 1, LATE + 2):
+        assert tripped(row, late_by(late_s), {lost}, periods_s) == []
+        assert tripped(row, late_by(late_s), {lost, lost + 1}, periods_s)[:1] == [lost + 2]
 
 
 def test_the_allowance_is_what_this_scan_and_the_one_before_came_late() -> None:
