@@ -1,4 +1,4 @@
-"""Acceptance checks: what the software is asked to do, measured from outside through its command line.
+"""Acceptance checks: the software's requirements, measured from outside through its command line.
 
-`python -m tests.campaigns.acceptance --list` names the topics; docs/testing.md says how they are run.
+`python -m tests.campaigns.acceptance --list` lists the topics; docs/testing.md describes how to run them.
 """

@@ -30,7 +30,7 @@ def options(arguments: list[str] | None) -> argparse.Namespace:
 
 
 def measure(topics: list[Topic], bench: Bench) -> int:
-    """Print every figure and return how many miss."""
+    """Print every figure and return the number of misses."""
     for topic in topics:
         bench.start(topic.runs(bench))
     missed = 0

@@ -1,4 +1,4 @@
-"""Runs the product as its users do: `tester` in processes of its own, each outcome kept for every topic."""
+"""Runs the product as its users do: `tester` in processes of its own, and keeps each outcome for all topics."""
 
 from __future__ import annotations
 
@@ -20,17 +20,17 @@ ROOT = Path(tester.__file__).resolve().parent.parent
 """Folder that holds the packages under test."""
 
 COMMAND = "from tester.cli.main import main; main()"
-"""What the console script `tester` does."""
+"""Same as the console script `tester`."""
 
 CPU_TO_FILE = "import atexit, time; atexit.register(lambda: open({!r}, 'w').write(str(time.process_time())))\n"
-"""For a platform whose parent processes are not told a child's CPU time."""
+"""For a platform that does not report a child's CPU time to its parent."""
 
 PATIENCE_S = 7200
-"""Wall-clock time after which a process that has not ended is given up."""
+"""Time-out of a process, wall clock."""
 
 
 class ProductError(Exception):
-    """A command did not do what a check builds on."""
+    """A command failed that a check depends on."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -45,20 +45,20 @@ class Outcome:
 
 @dataclass(frozen=True, slots=True)
 class RunSpec:
-    """One `tester run`; equal specifications are run once."""
+    """One `tester run`; equal specifications run once."""
 
     recipe: str
     """A shipped recipe's name, or a file."""
     seed: int = 1
     overrides: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
-    """Further options that must not change a result."""
+    """Further options; they must not change a result."""
     bus_log: bool = False
 
 
 @dataclass(frozen=True, slots=True)
 class Run:
-    """A run that has come to its end."""
+    """A finished run."""
 
     outcome: Outcome
     folder: Path
@@ -75,10 +75,10 @@ class Run:
 
 
 class Bench:
-    """Starts processes, some side by side, in a folder of its own."""
+    """Starts processes, several at a time, in a folder of its own."""
 
     def __init__(self, folder: Path, *, full: bool = False, jobs: int = 1) -> None:
-        """``folder`` gets every run; ``full``: the long form of each topic; ``jobs``: runs side by side."""
+        """``folder`` receives every run; ``full``: the long form of each topic; ``jobs``: runs side by side."""
         self.folder = folder
         self.full = full
         self._pool = ThreadPoolExecutor(max(jobs, 1))
@@ -87,13 +87,13 @@ class Bench:
         self._count = 0
 
     def close(self) -> None:
-        """Wait for what runs and drop what waits."""
+        """Wait for running processes and drop the queued ones."""
         self._pool.shutdown(cancel_futures=True)
 
     # -- files ------------------------------------------------------------------------------------------------
 
     def place(self, name: str) -> Path:
-        """Return a path that nobody else has been given."""
+        """Return a new path."""
         with self._lock:
             self._count += 1
             return self.folder / f"{self._count:03d}-{name}"
@@ -132,7 +132,7 @@ class Bench:
         return Outcome(process.returncode, texts[0], texts[1], cpu_s)
 
     def json(self, *arguments: str) -> dict[str, object]:
-        """Return what a command prints with --json. Raises ProductError where it fails."""
+        """Return what a command prints with --json. Raises ProductError if it fails."""
         done = self.tester(*arguments, "--json")
         if done.code != 0:
             raise ProductError(f"tester {' '.join(arguments)}: exit {done.code}: {done.stderr.strip()[-500:]}")
@@ -141,13 +141,13 @@ class Bench:
     # -- runs -------------------------------------------------------------------------------------------------
 
     def start(self, specs: Sequence[RunSpec]) -> None:
-        """Begin runs, or line them up."""
+        """Start runs, or queue them."""
         for spec in specs:
             if spec not in self._runs:
                 self._runs[spec] = self._pool.submit(self._run, spec)
 
     def run(self, spec: RunSpec) -> Run:
-        """Return a run at its end, started now if it was not. Raises ProductError where it has no tables."""
+        """Return a finished run; start it if necessary. Raises ProductError if it has no tables."""
         self.start([spec])
         return self._runs[spec].result()
 
@@ -168,7 +168,7 @@ class Bench:
 
 
 def _wait(process: subprocess.Popen[bytes]) -> float:
-    """Wait for a process and return the CPU time of it and its children in s, NaN where that is not known."""
+    """Wait for a process and return the CPU time of it and its children in s, NaN if unknown."""
     if not hasattr(os, "wait4"):
         process.wait(PATIENCE_S)
         return math.nan

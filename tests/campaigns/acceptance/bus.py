@@ -1,4 +1,4 @@
-"""What the quickstart puts on its buses: start-up, drive states, SYNC, pre-grind, shutdown."""
+"""The quickstart's bus traffic: start-up, drive states, SYNC, pre-grind, shutdown."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ NMT_START, NMT_STOP, NMT_PRE_OPERATIONAL = 1, 2, 128
 OPERATIONAL = 5
 STATES = {0x40: "disabled", 0x21: "ready", 0x23: "on", 0x27: "enabled"}
 STATES |= {0x07: "quick stop", 0x0F: "reacting", 0x08: "fault"}
-"""Names of statusword & 0x6F (CiA 402-2); bit 5 says nothing where the power is off, so 0x60 is 0x40."""
+"""Names of statusword & 0x6F (CiA 402-2); bit 5 means nothing with the power off, so 0x60 is 0x40."""
 NEIGHBOURS = {("disabled", "ready"), ("ready", "on"), ("on", "enabled")}
 PROOF = [0x8130, 0x0000]
-"""What a drive says to a heartbeat withheld, and once that is over (CiA 301, table 26)."""
+"""A drive's emergency codes when a heartbeat is missing, and when it is back (CiA 301, table 26)."""
 WHEEL_RADIUS_M = 0.045
 WHEEL, BELT, LOAD_N, GRIND_S = 0.8, 0.6, 200.0, 240.0
 """The pre-grind of the recipe: rim and belt speed in m/s."""
 SPEED_SHARE = 0.01
 SLIDING_M_S = 0.02
-"""Above this difference of rim and belt, in contact, the wheel slides; wear alone makes 0.004 m/s of it."""
+"""In contact, the wheel slides above this speed difference between rim and belt; wear alone causes 0.004 m/s."""
 CONTACT_N = 20.0
 TOUCHED_N = 8.0
-"""Half of a wheel's first contact, well above the noise: the zero is taken before it."""
+"""Half of a wheel's first contact load, well above the noise; the zero is taken before the first contact."""
 
 
 def runs(bench: Bench) -> list[RunSpec]:
@@ -58,7 +58,7 @@ def figures(bench: Bench) -> Iterator[Figure]:
 
 
 def _frames(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
-    """Yield what holds for every frame."""
+    """Yield figures about all frames."""
     yield holds("CAN frames in the log", record.count > 0, f"{record.count} over {record.end_s:.1f} s", "some")
     yield equal("frames back in time", record.backward, 0)
     unknown = sorted(f"{can_id:03X}" for can_id in set(record.frames) - record.known_ids())
@@ -103,7 +103,7 @@ def _identity(record: CanRecord, node: int) -> str:
 
 
 def _armed(record: CanRecord, node: int) -> tuple[float, str]:
-    """Return when a node's first consumer heartbeat was read back as it was written, and node:time in ms."""
+    """Return when a node's first consumer heartbeat read back as written, and node:time in ms."""
     transfers = [x for x in record.transfers(node) if (x.index, x.sub) == (0x1016, 1)]
     written, read = next(x for x in transfers if x.written), next(x for x in transfers if not x.written)
     value = f"{written.value >> 16}:{written.value & 0xFFFF}"
@@ -118,20 +118,20 @@ def _emergencies(record: CanRecord, node: int) -> list[tuple[float, int]]:
 
 
 def _started(record: CanRecord, node: int) -> float:
-    """Return when a node was started, infinity where it did not become operational."""
+    """Return when a node was started; infinity if it did not become operational."""
     start = next((t for t, command in record.nmt(node) if command == NMT_START), float("inf"))
     beats = [state for t, state in record.heartbeats(node) if start < t < start + 0.2]
     return start if OPERATIONAL in beats else float("inf")
 
 
 STATUS_BYTES = 2
-"""Length of a TPDO2 that tells the statusword; another tells digital inputs."""
+"""Length of a TPDO2 that contains the statusword; the other length contains digital inputs."""
 
 
 def _timed(record: CanRecord, axis: Axis) -> list[tuple[float, str]]:
     """Return the changes of a drive's state: time, name."""
     told = list(zip(record.times(0x180 + axis.node).tolist(), record.readings(axis)["6041"].tolist(), strict=True))
-    # Wheel and belt tell a change at once too: the scan that follows may command the next one before TPDO1 is due.
+    # Wheel and belt also report a change at once: the next scan may command another one before TPDO1 is due.
     at_once = (frame for frame in record.frames[0x280 + axis.node] if len(frame[1]) == STATUS_BYTES)
     told += [(t, int.from_bytes(data, "little")) for t, data in at_once]
     told.sort(key=lambda one: one[0])
@@ -165,7 +165,7 @@ def _states(record: CanRecord, axis: Axis) -> Iterator[Figure]:
 
 
 def _sync(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
-    """Yield the pace of SYNC while the wheel slides, and that each comes with one set of PDOs."""
+    """Yield the rate of SYNC while the wheel slides, and whether each SYNC has one set of PDOs."""
     sync = record.times(SYNC_ID)
     difference = np.abs(_speeds(record, "wheel", sync) - _speeds(record, "belt", sync))
     loads = np.interp(sync, cell.times_s, cell.raw_n)
@@ -188,7 +188,7 @@ def _sync(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
 
 
 def _speeds(record: CanRecord, name: str, sync: Vector) -> Vector:
-    """Return an axis' surface speed in m/s as told after each SYNC, NaN where it is not told."""
+    """Return an axis' surface speed in m/s as reported after each SYNC; NaN if not reported."""
     axis = record.axes[name]
     radius = WHEEL_RADIUS_M if axis.unit == "rad/s" else 1.0
     speeds = record.readings(axis)["606C"] * (radius / axis.velocity_counts)
@@ -211,12 +211,12 @@ def _before(record: CanRecord, axis: Axis, sync: Vector) -> Vector:
 
 
 def _pre_grind(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
-    """Yield the pre-grind: what is asked of wheel and belt, how long they do it, and the load."""
+    """Yield the pre-grind: commanded speeds of wheel and belt, its duration, and the load."""
     belt, wheel = record.axes["belt"], record.axes["wheel"]
     asked = record.commands(belt)["60FF"] / belt.velocity_counts
     times = record.times(0x200 + belt.node)
     at = np.flatnonzero(np.abs(asked - BELT) < 0.005)
-    # The longest stretch: other moves pass this speed, or hold it for a moment.
+    # The longest stretch: other moves pass through this speed or hold it briefly.
     stretches = np.split(at, np.flatnonzero(np.diff(at) > 1) + 1)
     longest = max(stretches, key=len)
     begin, end = longest[0], longest[-1]
@@ -287,13 +287,13 @@ def _shutdown(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
 
 
 def _last_moving(record: CanRecord, axis: Axis) -> float:
-    """Return when an axis was last told to move."""
+    """Return when an axis last received a command to move."""
     targets = record.commands(axis)["60FF"]
     return float(record.times(0x200 + axis.node)[np.flatnonzero(targets)[-1]])
 
 
 def _first_after(record: CanRecord, t: float) -> float:
-    """Return when a drive was first told to leave the enabled state after a time."""
+    """Return when, after a given time, a drive first received a command to leave the enabled state."""
     found: list[float] = []
     for axis in record.axes.values():
         times, words = record.times(0x200 + axis.node), record.commands(axis)["6040"].astype(int) & 0x0F

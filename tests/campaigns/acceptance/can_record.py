@@ -43,7 +43,7 @@ class Axis:
 
 @dataclass(frozen=True, slots=True)
 class Transfer:
-    """An expedited SDO transfer that its drive has confirmed at ``t`` s."""
+    """An expedited SDO transfer, confirmed by its drive at ``t`` s."""
 
     t: float
     written: bool
@@ -63,7 +63,7 @@ class CanRecord:
         self.frames: dict[int, list[tuple[float, bytes]]] = defaultdict(list)
         self.extended = 0
         self.backward = 0
-        """Frames whose wire time lies before that of the one in front of them."""
+        """Frames whose wire time is earlier than the previous frame's."""
         last = 0.0
         for message in can.CanutilsLogReader(folder / "can.log"):
             t = message.timestamp
@@ -91,7 +91,7 @@ class CanRecord:
     def pdo(self, can_id: int, entries: tuple[str, ...]) -> np.ndarray[Any, Any]:
         """Return a PDO's values, a field for each entry, named by its index in hexadecimal.
 
-        The widths come from the EDS. Raises ValueError where a frame has another length.
+        The widths come from the EDS. Raises ValueError if a frame has another length.
         """
         names = [entry.split()[0] for entry in entries]
         layout = np.dtype([(name, LAYOUTS[self.variable(int(name, 16), 0).data_type]) for name in names])
@@ -101,11 +101,11 @@ class CanRecord:
         return np.frombuffer(b"".join(data for _, data in self.frames[can_id]), layout)
 
     def commands(self, axis: Axis) -> np.ndarray[Any, Any]:
-        """Return what RPDO1 tells an axis: fields 6040 and 60FF or 607A."""
+        """Return an axis' RPDO1: fields 6040 and 60FF or 607A."""
         return self.pdo(0x200 + axis.node, axis.rpdo1)
 
     def readings(self, axis: Axis) -> np.ndarray[Any, Any]:
-        """Return what TPDO1 tells of an axis: fields 6041, 606C or 6064, 6077."""
+        """Return an axis' TPDO1: fields 6041, 606C or 6064, 6077."""
         return self.pdo(0x180 + axis.node, axis.tpdo1)
 
     def transfers(self, node: int) -> Iterator[Transfer]:

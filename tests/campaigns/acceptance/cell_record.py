@@ -52,7 +52,7 @@ class CellRecord:
         return float(np.mean(self.raw_n[chosen]))
 
     def trailing_mean_n(self, at_s: np.ndarray[Any, Any], span_s: float) -> np.ndarray[Any, Any]:
-        """Return the mean of the raw force over the ``span_s`` that end at each time."""
+        """Return the mean raw force over the ``span_s`` before each time."""
         total = np.concatenate(([0.0], np.cumsum(self.raw_n)))
         last = np.searchsorted(self.times_s, at_s, "right")
         first = np.searchsorted(self.times_s, at_s - span_s, "right")

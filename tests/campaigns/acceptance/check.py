@@ -11,7 +11,7 @@ from tests.campaigns.acceptance.topic import Topic
 
 EXIT_INVALID = 3
 TIMES_AT_MOST = 2.0
-"""A hostile file takes at most so many times the processor time of a small recipe: machines differ, and drift."""
+"""CPU time limit of a hostile file, in multiples of a small recipe's: machines differ, and drift."""
 
 MISTAKES = """\
 recipe: Five mistakes
@@ -39,7 +39,7 @@ WHERE = {
 
 DUPLICATE = MISTAKES.replace("0.8,", "0.8 m/s,").replace("many", "3").replace("300 mm\n", "300 mm/s\n")
 DUPLICATE = DUPLICATE.replace("2000 N", "200 N").replace("temprature: 40", "temperature: 25")
-"""A recipe whose only mistake is a key that stands twice: line 13, column 5."""
+"""A recipe whose only mistake is a duplicate key: line 13, column 5."""
 
 
 def figures(bench: Bench) -> Iterator[Figure]:

@@ -1,4 +1,4 @@
-"""The same seed gives the same bytes; another gives other repeats."""
+"""The same seed gives the same bytes; another seed gives other repeats."""
 
 from __future__ import annotations
 
@@ -18,19 +18,19 @@ SHORTER = (
     ("duration: 4 min", "duration: 10 s"),
     ("at_least: 20 min", "at_least: 1 min"),
 )
-"""What the short form changes in the quickstart; the wheel is then run in by decree (sim.running_in=0)."""
+"""Changes to the quickstart in the short form; its wheel counts as run in (sim.running_in=0)."""
 
 
 class Trials:
     """The runs of a bench: plain, with a bus log, with JSON lines at a lapse, with another seed."""
 
     def __init__(self) -> None:
-        """Have written no recipe."""
+        """Nothing is written yet."""
         self._recipes: dict[Bench, str] = {}
         self._pairs: dict[Bench, str] = {}
 
     def specs(self, bench: Bench) -> dict[str, RunSpec]:
-        """Return the runs by what is said of them; the first is what the others are compared with."""
+        """Return the runs by description; the others are compared with the first."""
         overrides = () if bench.full else ("sim.running_in=0",)
         recipe = self._recipe(bench)
         found = {
@@ -41,7 +41,7 @@ class Trials:
         return found | ({"no option": RunSpec(recipe, SEED, overrides)} if bench.full else {})
 
     def pair(self, bench: Bench) -> list[RunSpec]:
-        """Return a run of two specimens with one job and with two; only the long form has them (2 x 45 min of rig)."""
+        """Return a run of two specimens with one job and with two; long form only (2 x 45 min of rig time)."""
         if not bench.full:
             return []
         if bench not in self._pairs:
@@ -74,7 +74,7 @@ class Trials:
         yield equal("another seed: repeats with the same coefficient", same, 0)
 
     def _recipe(self, bench: Bench) -> str:
-        """Return the quickstart, made shorter unless the long form is asked for."""
+        """Return the quickstart, shortened unless the long form is requested."""
         if bench.full:
             return "quickstart"
         if bench not in self._recipes:

@@ -1,4 +1,4 @@
-"""One measured figure with what is asked of it."""
+"""One measured figure with its limit."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """A figure, its limit in words, and whether it keeps it; ``str`` gives its line."""
+    """A figure, its limit in words, and whether it keeps the limit; ``str`` gives the printed line."""
 
     name: str
     value: str
@@ -38,12 +38,12 @@ def at_least(name: str, value: float, limit: float, unit: str = "", digits: int 
 
 
 def equal(name: str, value: object, expected: object) -> Figure:
-    """Ask for one value exactly."""
+    """Compare with an exact value."""
     return Figure(name, _words(value), _words(expected), value == expected)
 
 
 def holds(name: str, ok: bool, value: str, limit: str) -> Figure:
-    """State a figure whose comparison was made elsewhere."""
+    """Return a figure that was compared elsewhere."""
     return Figure(name, value, limit, ok)
 
 

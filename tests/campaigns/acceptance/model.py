@@ -1,4 +1,4 @@
-"""The paper's friction model, written down a second time so that the product is not compared with itself.
+"""The paper's friction model, written independently so that the product is not compared with itself.
 
 Polymers 2024, 16(5), 596, doi 10.3390/polym16050596 (CC BY 4.0), equations 4-9, slip in m/s.
 """

@@ -1,4 +1,4 @@
-"""`tester plan recipes/table2.yaml --json`: the whole programme as it will be run."""
+"""`tester plan recipes/table2.yaml --json`: the whole planned programme."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ from tests.campaigns.acceptance.topic import Topic
 
 SETPOINT = ("compound", "slip_velocity_m_s", "load_n", "sideslip_deg", "camber_deg", "temperature_c", "wheel_speed_m_s")
 STANDSTILL_S = 45 * 60.0
-"""Greatest length of the way from a part's last step to standstill (interlocks.cooldown_at_most); on the simulated rig
-every specimen is a part of its own, and each cools down at its end."""
+"""Longest time from a part's last step to standstill (interlocks.cooldown_at_most); on the simulated rig every specimen
+is a part of its own, and each cools down at its end."""
 Step = dict[str, Any]
 
 
@@ -61,11 +61,11 @@ def _wheels(steps: list[Step], plan: dict[str, Any]) -> Iterator[Figure]:
     needless = 0
     for (wheel, loss), following in zip(zip(wheels, losses, strict=True), wheels[1:], strict=False):
         if wheel[0]["specimen"] == following[0]["specimen"]:
-            # A change is due when what is to come at the next temperature does not fit on the wheel any more.
+            # A change is due when the wheel cannot take all conditions of the next temperature.
             conditions = [step for step in following if step["kind"] == "condition"]
             first = next(step for step in conditions if step["grid"] != "reference")
             last = max(n for n, s in enumerate(conditions) if s["temperature_c"] == first["temperature_c"])
-            # References that fall due before them or among them wear the wheel as well.
+            # References due before or among them also wear the wheel.
             block = conditions[: last + 1]
             needless += loss + fsum(step.get("loss_mm", 0.0) for step in block) <= limit
     yield equal("wheels changed although the next temperature's conditions would fit", needless, 0)

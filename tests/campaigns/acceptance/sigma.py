@@ -1,4 +1,4 @@
-"""By how much the mean of repeats misses the model, from the standard deviations that the twin is given."""
+"""Expected difference between the mean of repeats and the model, from the twin's standard deviations."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ def mean_of_autoregressive(sigma: float, time_s: float, window_s: float) -> floa
 
 
 def stated_sigma(parameters: SimParameters, compound: str, repeats: int, window_s: float) -> float:
-    """Return the relative standard deviation by which the mean of a condition's repeats misses the model.
+    """Return the relative standard deviation of the mean of a condition's repeats about the model.
 
-    Wheel and condition scatter in full, repeat-to-repeat scatter and the fluctuation within a window of
-    ``window_s`` (total accepted time of one repeat, s) divided by the root of ``repeats``. Sensor
-    imperfections are not in it. Raises KeyError for a compound without a friction model.
+    Wheel and condition scatter in full, repeat-to-repeat scatter and the fluctuation within a window of ``window_s``
+    (total accepted time of one repeat, s) divided by the root of ``repeats``. Excludes sensor imperfections. Raises
+    KeyError for a compound without a friction model.
     """
     v = parameters.variability
     within = mean_of_autoregressive(v.within, v.within_time, window_s)

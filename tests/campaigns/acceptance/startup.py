@@ -1,4 +1,4 @@
-"""How light the command is, and what the engine drags in."""
+"""Start-up time of the command, and the modules that the engine imports."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ print(*sorted({{name.partition(".")[0] for name in sys.modules}} & set({FOREIGN!
 
 def figures(bench: Bench) -> Iterator[Figure]:
     """Measure."""
-    first = bench.tester("--help")  # leaves the bytecode of every module behind
+    first = bench.tester("--help")  # writes the bytecode of every module
     pairs = [(bench.tester("--help"), bench.python("pass")) for _ in range(ATTEMPTS)]
     yield equal("tester --help: exit codes", sorted({first.code, *(done.code for done, _ in pairs)}), [0])
     ratio = median(done.cpu_s / bare.cpu_s for done, bare in pairs)

@@ -13,7 +13,7 @@ from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
 from tests.campaigns.acceptance.topic import Topic
 
 ROWS = {"1#": 55, "2#": 55, "3#": 50}
-"""Least rows of the paper's table for each compound."""
+"""Minimum number of rows of the paper's table for each compound."""
 SAMPLE_ROWS = 3
 SURFACE_K = 0.7
 ESTIMATE_PERCENT = 15.0
@@ -26,7 +26,7 @@ SAMPLE = (
     (r"( +slip_velocity): \[.*\]", r"\1: [300 mm/s]"),
     (r"( +sideslip): \[.*\]", r"\1: [0 deg, 20 deg]"),
 )
-"""What makes three conditions of the 55: 200 N, 400 N, and 200 N at 20 deg of sideslip, all at 300 mm/s and 40 degC."""
+"""Reduces the 55 conditions to three: 200 N, 400 N, and 200 N at 20 deg of sideslip, all at 300 mm/s and 40 degC."""
 
 
 def recipe_text(compound: str, full: bool) -> str:
@@ -47,7 +47,7 @@ class Campaign:
     """The recipe files and runs of the three compounds, written once for a bench."""
 
     def __init__(self) -> None:
-        """Have written nothing."""
+        """Nothing is written yet."""
         self._specs: dict[Bench, dict[str, RunSpec]] = {}
 
     def specs(self, bench: Bench) -> dict[str, RunSpec]:
@@ -104,7 +104,7 @@ def _figures(bench: Bench, compound: str, run: Run, estimate_s: float, plan: dic
 
 
 def _missing(compound: str, run: Run, conditions: list[dict[str, str]]) -> Iterator[Figure]:
-    """Yield whether each condition without a row is named with its reason."""
+    """Yield whether the output names each condition without a row, and its reason."""
     said = run.outcome.stderr.splitlines()
     missing = [row for row in conditions if row["status"] != "ok"]
     named = 0

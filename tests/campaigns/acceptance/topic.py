@@ -1,4 +1,4 @@
-"""What a topic is."""
+"""An acceptance topic."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class Topic:
     name: str
     title: str
     figures: Callable[[Bench], Iterable[Figure]]
-    """Measures; a generator, so that what was measured before a failure is still shown."""
+    """Measures; a generator, so that figures measured before a failure are still shown."""
     runs: Callable[[Bench], list[RunSpec]] = no_runs
-    """Names the runs it builds on, so that they can be started early."""
+    """Lists the runs it needs, so that they can start early."""
 
     def measured(self, bench: Bench) -> Iterable[Figure]:
-        """Yield the figures; what keeps one from being measured is a miss, with its reason."""
+        """Yield the figures; a failed measurement is a miss, with its reason."""
         try:
             yield from self.figures(bench)
         except (ProductError, LookupError, ValueError, OSError) as error:

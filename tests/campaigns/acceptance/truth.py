@@ -1,4 +1,4 @@
-"""The quickstart's coefficients against the model at what was measured in each window."""
+"""The quickstart's coefficients against the model at the means measured in each window."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ from tests.campaigns.acceptance.topic import Topic
 CONDITIONS = 2
 RECIPE = "quickstart"
 SEEDS = (0, 1, 2, 3, 4)
-"""Results are judged over all of them, in the short form too: one seed that suits proves nothing."""
+"""Results are judged over all seeds, even in the short form: a single lucky seed proves nothing."""
 QUIET = ("sim.noise=0", "sim.scatter=0")
 NOISY = ("sim.scatter=0",)
 
 SHARED = RunSpec(RECIPE, SEEDS[0], bus_log=True)
-"""The run with everything on that the buses are looked at in, too."""
+"""The run with everything on; also the one whose buses are examined."""
 
 
 def exact_runs(bench: Bench) -> list[RunSpec]:
-    """Name the runs with neither noise nor scatter: nothing is drawn in them, one seed is all of them."""
+    """Name the runs with neither noise nor scatter: nothing is random in them, so one seed is enough."""
     return [RunSpec(RECIPE, seed, QUIET) for seed in (SEEDS if bench.full else SEEDS[:1])]
 
 
@@ -54,7 +54,7 @@ def figures(bench: Bench) -> Iterator[Figure]:
 
 
 def _measured(run: Run) -> Iterator[tuple[dict[str, str], float]]:
-    """Yield each condition with its error in per cent of the model's value, NaN where it has no coefficient."""
+    """Yield each condition with its error in per cent of the model's value; NaN without a coefficient."""
     for row in run.rows("conditions.csv"):
         surface, load, slip = _means(row)
         expected = coefficient(row["compound"], surface, load, slip / 1000.0)
@@ -62,7 +62,7 @@ def _measured(run: Run) -> Iterator[tuple[dict[str, str], float]]:
 
 
 def _means(row: dict[str, str]) -> tuple[float, float, float]:
-    """Return the measured means: surface in degC, load in N, slip in mm/s; NaN where there are none."""
+    """Return the measured means: surface in degC, load in N, slip in mm/s; NaN if missing."""
     surface, load, slip = (row[f"measured_{key}"] for key in ("surface_c", "force_z_n", "slip_mm_s"))
     return float(surface or "nan"), float(load or "nan"), float(slip or "nan")
 
@@ -72,7 +72,7 @@ def _name(row: dict[str, str], kind: str) -> str:
 
 
 def _trusted(kind: str, measured: list[tuple[dict[str, str], float]]) -> Figure:
-    """Return whether each condition has a coefficient that the product itself stands by."""
+    """Return whether each condition has a coefficient that the product itself considers valid."""
     without = [f"{row['load_n']} N: {row['status']}: {row['reason']}" for row, _ in measured if row["status"] != "ok"]
     return equal(f"{kind}: conditions without a coefficient in the table", "; ".join(without) or "none", "none")
 
