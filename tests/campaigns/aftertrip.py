@@ -1,9 +1,9 @@
 """`python -m tests.campaigns.aftertrip [--sample]`: after a trip no axis stays under power, whatever datum is frozen.
 
 Each case freezes one process datum of one drive, or one sensor, before, during or after a stop, at any moment of a
-recipe. In half of the cases the axis with the frozen datum also runs away while it has power. Judged is the twin's own
-power stage: each axis loses its power within a second after the time of its stop. Prints a line a figure; exit code 1
-where one misses.
+recipe. In half of the cases the axis with the frozen datum also runs away while it has power. The twin's own power
+stage is judged: each axis must lose its power within a second after the time allowed for its stop. Prints a line a
+figure; exit code 1 where one misses.
 """
 
 from __future__ import annotations
@@ -30,19 +30,19 @@ from tests.campaigns.faults.wheel_harm import UNLOADED_N
 RECIPES = {"wheel_on_belt": ("heated", "reversed", "sideslip"), "specimen_on_track": ("slow track", "disc")}
 SAMPLE = {"wheel_on_belt": ("heated",), "specimen_on_track": ("slow track",)}
 OVERRIDES = {"wheel_on_belt": ("interlocks.cooldown_hub=35 degC",), "specimen_on_track": ()}
-"""A wheel that is heated to 40 degC is cooled turning."""
+"""A wheel heated to 40 degC turns while it cools down."""
 CASES, SAMPLE_CASES = 1500, 110
 """Cases of each kind of rig."""
 BEFORE_S, AFTER_S = 2.0, 3.0
-"""The datum freezes this long before the stop begins at most, or this long after it."""
+"""The datum freezes at most this long before or after the beginning of the stop."""
 WATCHED_S = 14.0
-"""A stop that nothing ends is watched for this long: "stop not ended" comes after ten seconds."""
+"""A stop that does not end is watched for this long: "stop not ended" trips after ten seconds."""
 POWER_S = 1.0
 """Power may last this much longer than a stop."""
 SHOWN_S = 1.0
-"""A wheel that creeps and whose speed is frozen shows it after this time (``interlocks.frozen_wheel``)."""
+"""A creeping wheel with a frozen speed is detected after this time (``interlocks.frozen_wheel``)."""
 ENDING, ENDING_SHARE = ("stopping", "cooldown"), 0.3
-"""Modes of a stop in which so many of the cases begin; in half of these nothing else begins one."""
+"""Modes of a stop, with the number of cases that begin in each; in half of the cases nothing else causes a stop."""
 GOING = frozenset({"run", "hold", "armed"})
 DATA = ("statusword", "reading", "torque", "feedback", "inputs")
 SENSORS = {
@@ -52,7 +52,7 @@ STUCK = {
     "wheel_on_belt": ("jacket output stuck on", "jacket output stuck off", "contactor welded", "contactor dead"),
     "specimen_on_track": ("chamber runs away",),
 }  # fmt: skip
-"""Outputs, and a contactor with its feedback, that stay as they are."""
+"""Outputs, and a contactor with its feedback, that freeze."""
 RUNAWAYS = {
     "wheel": ("wheel runs away", 10.0, "rad/s"), "belt": ("belt runs away", 0.5, "m/s"),
     "track": ("track overspeeds", 5.0, "mm/s"),
@@ -71,12 +71,12 @@ STOPS = {
 }  # fmt: skip
 """What begins a stop."""
 UNCOMMANDED = ("fault", "torque off", "heartbeat lost", "in local mode")
-"""Faults after which a drive takes no command, or has no power: its load is not lifted by it."""
+"""Faults after which a drive accepts no command, or has no power, so it cannot lift its load."""
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A moment, the datum that freezes and how long after the stop's beginning (s), what else happens with it."""
+    """A moment, the datum that freezes, its delay after the beginning of the stop (s), and what else happens."""
 
     moment: Moment
     frozen: str
@@ -92,7 +92,7 @@ class Case:
 
 @dataclass(slots=True)
 class Verdict:
-    """What came of a case: the mode in which the datum froze, the axes that kept power for too long, harm."""
+    """The result of a case: the mode in which the datum froze, the axes that kept power for too long, harm."""
 
     case: Case
     mode: str = ""
@@ -108,7 +108,7 @@ class Watch:
     """Watches the power of each axis of one stage from the beginning of its stop."""
 
     def __init__(self, stage: Stage, case: Case) -> None:
-        """Let the faults begin as the case says; the stop begins ``BEFORE_S`` from now."""
+        """Start the case's faults; the stop begins ``BEFORE_S`` from now."""
         self.stage, self.case, self.verdict = stage, case, Verdict(case)
         self.begun_s, self.stopped_s = stage.next_s, inf
         self.frozen_s = stage.next_s + BEFORE_S + case.after_s
@@ -150,7 +150,7 @@ class Watch:
         self._powered = powered
 
     def _look_at_load(self, now: float) -> None:
-        """See that a press which obeys has lifted before it loses its power."""
+        """Check that a working press lifts before it loses its power."""
         obeys = not any(what in self.case.begins for what in (*UNCOMMANDED, "safety chain"))
         loaded = self.stage.rig.plant.force_z_n >= UNLOADED_N
         if obeys and loaded and "press" not in self.case.frozen and now - self.stopped_s < self._lift_s():
@@ -161,7 +161,8 @@ class Watch:
         return 1.0 + 0.8
 
     def _due(self, name: str) -> float:
-        """Return until when an axis may have power, s. Only a wheel that turns slowly as its data show may go on."""
+        """Return until when an axis may have power, s. Only a wheel whose data show that it turns slowly may
+        continue."""
         stage = self.stage
         if name != "wheel" or not stage.run.engine.control.state.setpoints.creeps:
             return self._due_s[name]
@@ -169,7 +170,7 @@ class Watch:
         return inf if shows else max(self._due_s[name], max(self.frozen_s, stage.mode_since_s) + SHOWN_S + POWER_S)
 
     def _stop_s(self, name: str) -> float:
-        """Return how long the stop of an axis takes at most, from docs/safety.md and its kind's page, s."""
+        """Return the maximum stopping time of an axis, from docs/safety.md and its kind's page, s."""
         control = self.stage.run.engine.control
         if self.case.moment.recipe in TRACKS:
             limits, speed = control.view.limits, abs(self.stage.rig.track_m_s)
@@ -208,13 +209,13 @@ def cases(kind: str, moments: Sequence[Moment], count: int, seed: int, axes: Ite
         if moment in ending and chooser.random() < 0.5:
             begins = ""  # the stop is under way
         if any(begins == f"{what.partition(' ')[0]} drive {deaf}" for deaf in UNCOMMANDED):
-            also = ""  # a drive that takes no command is stopped by its safe torque off
+            also = ""  # safe torque off stops a drive that accepts no command
         count -= 1
         yield Case(moment, what, chooser.uniform(-BEFORE_S, AFTER_S), begins, also)
 
 
 def conduct(drawn: Sequence[Case], overrides: tuple[str, ...] = ()) -> Iterator[Verdict]:
-    """Judge every case; each recipe is run once, on its rig with ``overrides`` besides."""
+    """Judge every case; each recipe runs once, on its rig with ``overrides``."""
     recipes = dict.fromkeys(case.moment.recipe for case in drawn)
     for recipe in recipes:
         by_moment: dict[Moment, list[Case]] = {}
@@ -246,7 +247,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def judged(kind: str, recipes: Sequence[str], count: int, seed: int) -> bool:
-    """Draw and judge the cases of a kind of rig; print its figures and return whether all are met."""
+    """Draw and judge the cases of a kind of rig; print its figures and return whether all are within their limits."""
     moments: list[Moment] = []
     axes: dict[str, None] = {}
     for recipe in recipes:

@@ -5,9 +5,9 @@
     python -m tests.campaigns.against COMMIT --lists          # the lists alone; seconds
     python -m tests.campaigns.against COMMIT --words FILE     # old and new wording of cells, a pair a line, by a tab
 
-The earlier tree is taken from git into a folder of its own, and both run with this interpreter and its packages. What
-only the earlier one has is a miss unless ``GONE`` names it; what only this one has is printed. A table differs where a
-byte does, once the words of FILE are replaced. Exit code 1 on a miss.
+The earlier tree is taken from git into a folder of its own, and both run with this interpreter and its packages. An
+item that only the earlier tree has is a miss unless ``GONE`` lists it; items that only this tree has are printed.
+Tables are compared byte by byte, after the words of FILE are replaced. Exit code 1 on a miss.
 """
 
 from __future__ import annotations
@@ -42,7 +42,7 @@ GONE = {
     "command include": "results include",
     "command slip-ring": "results slip-ring",
 }
-"""Commands by the words that replaced them, with all of their options."""
+"""Commands that were replaced, with all of their options."""
 COMMANDS = """
 import click
 from tester.cli.main import root
@@ -85,7 +85,7 @@ def keys_of(value: Any, path: str = "") -> Iterator[str]:
 
 
 def properties(schema: dict[str, Any], part: Any, path: str = "", inside: tuple[str, ...] = ()) -> Iterator[str]:
-    """Yield the dotted keys that a part of a JSON Schema allows; a reference to itself ends there."""
+    """Yield the dotted keys that a part of a JSON Schema allows; stops at a reference to itself."""
     if isinstance(part, list):
         for item in part:
             yield from properties(schema, item, path, inside)
@@ -109,7 +109,7 @@ def rows_of(tree: Path) -> Iterator[str]:
 
 
 def lists_of(tree: Path) -> set[str]:
-    """Return every command, option, key and row of a tree, a line each."""
+    """Return every command, option, key and row of a tree, one per line."""
     listed = set(python(tree, COMMANDS).splitlines())
     for path in sorted([*(tree / "recipes").glob("*.schema.json"), *(tree / "docs").glob("*.schema.json")]):
         schema = json.loads(path.read_text(encoding="utf-8"))
@@ -123,7 +123,7 @@ def lists_of(tree: Path) -> set[str]:
 
 
 def missing(before: set[str], now: set[str]) -> list[str]:
-    """Return what only the earlier tree lists, without the commands that have other words now."""
+    """Return what only the earlier tree lists, except renamed commands."""
     lost = before - now
     for old, new in GONE.items():
         moved = {line for line in lost if line == old or line.startswith(f"{old} ")}
@@ -168,7 +168,7 @@ def words_of(path: Path | None) -> list[tuple[str, str]]:
 
 
 def compare_runs(before: Path, recipe: str, seed: int, folder: Path, words: list[tuple[str, str]]) -> int:
-    """Run a recipe on both trees, print what differs, and return how many misses that is."""
+    """Run a recipe on both trees, print the differences, and return the number of misses."""
     old = run_of(before, recipe, seed, folder / f"before-{recipe}-{seed}")
     new = run_of(ROOT, recipe, seed, folder / f"now-{recipe}-{seed}")
     earlier, later = tables_of(old, words), tables_of(new, [])

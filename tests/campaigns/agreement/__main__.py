@@ -1,8 +1,8 @@
 """`python -m tests.campaigns.agreement [--sample] [--seed N] [--runs N]`: do a run's outputs contradict one another?
 
-Makes short runs of both kinds of rig, reads every output of each back into facts, and holds these against each other to
-the printed digits. Then renderers are made to err, one by one: each must be noticed. One line a figure; exit status 0
-when every figure is what is asked for, 1 when one misses it.
+Makes short runs of both kinds of rig, reads every output of each back into facts, and compares these to the printed
+digits. Then one renderer at a time is changed to make an error, which the comparison must detect. One line a figure;
+exit status 0 when every figure is what is asked for, 1 when one misses it.
 """
 
 from __future__ import annotations
@@ -29,15 +29,15 @@ RUNS = 40
 SAMPLE = ("a repeat excluded", "disc, stopped")
 """The scenes of the short form."""
 DRAWN = 5
-"""`tester figure` draws every so many runs; the report draws those of all."""
+"""Interval of runs that `tester figure` draws; the report draws the figures of all runs."""
 KEPT = "made.pickle"
-"""Beside the runs: how each was made."""
+"""File beside the runs: how each was made."""
 SHOWN = 12
-"""Disagreements of a kind that are printed."""
+"""Number of disagreements printed of each kind."""
 TRIED = 12
-"""Runs of which one at least must show a mutant."""
+"""At least one of these runs must show a mutant."""
 SAMPLE_EVERY = 4
-"""The short form lets every so many of the mutants live."""
+"""The short form tries one mutant in so many."""
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -108,7 +108,7 @@ def _read(made: Sequence[Made], reports: Path) -> Iterator[Facts]:
 
 
 def _print(found: Comparison) -> None:
-    """Print disagreements, some of each kind, and which quantities a single output prints."""
+    """Print some disagreements of each kind, and the quantities that only one output prints."""
     kinds: dict[tuple[str, str], list[str]] = {}
     for one in found.disagreements:
         kinds.setdefault((str(one.subject[0]), one.quantity), []).append(str(one))
@@ -122,7 +122,7 @@ def _print(found: Comparison) -> None:
 
 
 def _cpu_s() -> float:
-    """Return CPU time of this process and of those it waited for, s."""
+    """Return CPU time of this process and its finished children, s."""
     used = [getrusage(who) for who in (RUSAGE_SELF, RUSAGE_CHILDREN)]
     return sum(one.ru_utime + one.ru_stime for one in used)
 

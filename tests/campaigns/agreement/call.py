@@ -19,12 +19,12 @@ class Printed:
 
 
 class CallError(Exception):
-    """A command that was to print results failed."""
+    """A command that should print results failed."""
 
 
 @contextmanager
 def _streams() -> Iterator[tuple[io.TextIOWrapper, io.TextIOWrapper]]:
-    """Lend standard streams that keep what is written to them, bytes included."""
+    """Capture the standard streams, bytes included."""
     out, err = (io.TextIOWrapper(io.BytesIO(), encoding="utf-8", newline="") for _ in range(2))
     program = sys.argv
     sys.argv = ["tester"]
@@ -48,7 +48,7 @@ def captured(work: Callable[[], int]) -> Printed:
 
 
 def called(*arguments: str) -> Printed:
-    """Return what `tester ARGUMENTS` prints; raises CallError where it fails."""
+    """Return what `tester ARGUMENTS` prints; raises CallError if it fails."""
     from tester.cli.main import invoke
 
     found = captured(lambda: invoke([*arguments]))

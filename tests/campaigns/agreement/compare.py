@@ -1,4 +1,4 @@
-"""Facts held against each other: where outputs contradict one another, and what an output leaves out."""
+"""Compares facts: where outputs contradict each other, and what an output leaves out."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ from tests.campaigns.agreement.names import (
 from tests.campaigns.agreement.record import Record
 
 _ROUNDING = 1e-9
-"""Relative: what decimal digits and binary numbers do to each other."""
+"""Relative difference between decimal and binary numbers."""
 Key = tuple[Subject, str]
 Grouped = Mapping[Key, Sequence[Fact]]
 
@@ -42,18 +42,18 @@ class Disagreement:
 
     @property
     def key(self) -> Key:
-        """Return what it is about."""
+        """Return its subject."""
         return self.subject, self.quantity
 
     def __str__(self) -> str:
-        """Return a line for people."""
+        """Return a readable line."""
         which = " ".join(map(str, self.subject))
         return f"{which}: {self.quantity}: {self.why or '; '.join(map(str, self.facts))}"
 
 
 @dataclass(frozen=True, slots=True)
 class Comparison:
-    """What comparing gives. ``compared``: facts that another output states, too; ``alone``: the others."""
+    """The result of a comparison. ``compared``: facts that another output also states; ``alone``: the others."""
 
     disagreements: tuple[Disagreement, ...]
     compared: int
@@ -70,7 +70,7 @@ def grouped(read: Iterable[Facts]) -> Grouped:
 
 
 def compare(read: Sequence[Facts], records: Sequence[Record]) -> Comparison:
-    """Hold the facts of all outputs of some runs against each other, and against what follows from them."""
+    """Compare the facts of all outputs of some runs with each other, and with what follows from them."""
     stated = grouped(read)
     groups = grouped([*read, worked_out(stated), *(counted(stated, record) for record in records)])
     found = [
@@ -98,8 +98,7 @@ def contradictions(
 ) -> Iterator[Disagreement]:
     """Yield what contradicts the most precise statement of a quantity.
 
-    ``valued``: a dash beside a number counts. Of a condition that has no value to be trusted an output may withhold the
-    number.
+    ``valued``: a dash beside a number counts. An output may omit the number of a condition without a valid value.
     """
     numbers = [fact for fact in facts if isinstance(fact.value, float | int)]
     empty = [fact for fact in facts if fact.value is None]
@@ -117,14 +116,14 @@ def contradictions(
 
 
 def agrees(one: Fact, best: Fact) -> bool:
-    """Tell whether a number is what the most precise one is rounded to."""
+    """Return whether a number is the rounded most precise one."""
     assert isinstance(one.value, float | int)
     assert isinstance(best.value, float | int)
     return abs(one.value - best.value) <= one.half + best.half + _ROUNDING * abs(best.value)
 
 
 def _nearest(groups: Grouped) -> Iterator[Disagreement]:
-    """Yield points that lie on no coefficient of the rows that may be meant."""
+    """Yield points that match no coefficient of the candidate rows."""
     for (subject, quantity), facts in groups.items():
         if subject[0] != "nearest":
             continue
@@ -240,11 +239,11 @@ REQUIRED: Mapping[str, tuple[str, ...]] = {
     "report": (MU, MU_MEASURED, U_THIS, U_COMPOUND, VALID, FLAGS, MARK),
     "screen Results": (MU, VALID, FLAGS, MARK),
 }
-"""What an output states of every row that has a value."""
+"""What an output must state for every row with a value."""
 
 
 def incomplete(groups: Grouped) -> Iterator[Disagreement]:
-    """Yield what an output leaves out of a row that others give a value for."""
+    """Yield what an output leaves out of a row for which others give a value."""
     stated: dict[tuple[str, Subject], set[str]] = {}
     rows: set[Subject] = set()
     for (subject, quantity), facts in groups.items():
@@ -261,7 +260,7 @@ def incomplete(groups: Grouped) -> Iterator[Disagreement]:
 
 
 def _repeats(stated: Mapping[tuple[str, Subject], set[str]]) -> Iterator[Disagreement]:
-    """Yield the repeats that an output leaves out, of those that the table of repeats has."""
+    """Yield the repeats of the table of repeats that an output leaves out."""
     listed = {subject for output, subject in stated if output == "export repeats" and subject[0] == "repeat"}
     for output in ("show --json", "screen repeats"):
         if any(other == output for other, _ in stated):
@@ -271,13 +270,13 @@ def _repeats(stated: Mapping[tuple[str, Subject], set[str]]) -> Iterator[Disagre
 
 
 def _covers(output: str, subject: Subject, stated: Mapping[tuple[str, Subject], set[str]]) -> bool:
-    """Tell whether an output was read, and lists what the subject is: some list conditions, some the recipe's rows."""
+    """Return whether an output was read and lists such subjects: some list conditions, some the recipe's rows."""
     listed = {other[0] for kind, other in stated if kind == output and other[1] == subject[1]}
     return subject[0] in listed if subject[0] == "row" else bool(listed)
 
 
 def sums(groups: Grouped) -> Iterator[Disagreement]:
-    """Yield counts that do not add up: what was made is valid or left out."""
+    """Yield counts that do not add up: each repeat made is either valid or left out."""
     for subject in {subject for subject, _ in groups}:
         made, valid, out = (_best(groups.get((subject, one), ())) for one in (MADE, VALID, LEFT_OUT))
         if subject[0] != "run" and made is not None and valid is not None and out is not None:

@@ -1,4 +1,4 @@
-"""A fact is one statement that an output makes: of what, which quantity, the value, and to how many digits.
+"""A fact is one statement of an output: its subject, quantity, value, and number of digits.
 
 A number is kept with half a unit of its last digit. Two outputs agree where a value exists that both round to.
 """
@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from math import floor, isfinite, log10
 
 Subject = tuple[str | int, ...]
-"""What a fact is of: ("run", name), ("condition", name, 3), ("row", name, 2), ("repeat", name, 3, 1)."""
+"""The subject of a fact: ("run", name), ("condition", name, 3), ("row", name, 2), ("repeat", name, 3, 1)."""
 Value = float | str | frozenset[str] | None
 """A number, a text, a set of words; None where the output prints a dash or leaves the cell empty."""
 
@@ -31,7 +31,7 @@ class Fact:
     output: str
 
     def __str__(self) -> str:
-        """Return the statement for people."""
+        """Return the statement as readable text."""
         shown = ", ".join(sorted(self.value)) or "none" if isinstance(self.value, frozenset) else self.value
         return f"{self.output}: {shown}"
 
@@ -43,18 +43,18 @@ class Facts:
     output: str
     collected: list[Fact] = field(default_factory=list[Fact])
     strange: list[str] = field(default_factory=list[str])
-    """What the reader could not take in: a line without a place, a row without a condition."""
+    """What the reader could not interpret: a line without a place, a row without a condition."""
 
     def add(self, subject: Subject, quantity: str, value: Value, half: float = 0.0) -> None:
-        """Take in a statement."""
+        """Add a statement."""
         self.collected.append(Fact(subject, quantity, value, half, self.output))
 
     def count(self, subject: Subject, quantity: str, value: str | int) -> None:
-        """Take in a count, which is exact."""
+        """Add a count, which is exact."""
         self.add(subject, quantity, float(value))
 
     def number(self, subject: Subject, quantity: str, cell: str, significant: int = 0) -> None:
-        """Take in a number as printed. ``significant``: digits, where trailing zeros are not printed."""
+        """Add a number as printed. ``significant``: digits, if trailing zeros are not printed."""
         if is_dash(cell):
             self.add(subject, quantity, None)
             return
@@ -65,12 +65,12 @@ class Facts:
             self.add(subject, quantity, *parsed)
 
     def words(self, subject: Subject, quantity: str, words: Iterable[str]) -> None:
-        """Take in a set of words, such as flags."""
+        """Add a set of words, such as flags."""
         self.add(subject, quantity, frozenset(word.strip() for word in words if word.strip()))
 
 
 def is_dash(cell: str) -> bool:
-    """Tell whether a cell says that there is no value."""
+    """Return whether a cell means "no value"."""
     return cell.strip().strip(_MARKS).strip().lower() in _DASHES
 
 
@@ -81,10 +81,10 @@ def marks_of(cell: str) -> str:
 
 
 def printed(cell: str, significant: int = 0) -> tuple[float, float] | None:
-    """Return a printed number and half a unit of its last digit; None where the cell is no number.
+    """Return a printed number and half a unit of its last digit; None if the cell is not a number.
 
-    A unit or a per cent sign may follow. With ``significant`` digits (C's %g) trailing zeros count though they are not
-    there; a negative count means that the number is exact.
+    A unit or a per cent sign may follow. With ``significant`` digits (C's %g) missing trailing zeros count; a negative
+    count means that the number is exact.
     """
     text = cell.replace("\u00a0", " ").replace("−", "-").strip().rstrip(_MARKS)
     match = _NUMBER.match(text)

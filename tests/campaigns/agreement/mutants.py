@@ -1,4 +1,4 @@
-"""Deliberate disagreements: one renderer errs, and the comparison has to notice.
+"""Deliberate disagreements: one renderer makes an error, and the comparison must detect it.
 
 Each mutant is a text in a module's source, replaced by another while the module is imported, in a process of its own
 that reads the outputs of one run again. Nothing on disk changes.
@@ -39,7 +39,7 @@ _MODULE = "tests.campaigns.agreement.mutants"
 class Mutant:
     """A wrong renderer: ``old`` in the source of ``module`` reads ``new``.
 
-    ``parts``: outputs that are read to notice it (``outputs.PARTS``), beside the tables.
+    ``parts``: outputs that are read to detect it (``outputs.PARTS``), besides the tables.
     """
 
     module: str
@@ -124,16 +124,16 @@ MUTANTS: Mapping[str, Mutant] = {
         (SCREENS,),
     ),
 }  # fmt: skip
-"""By what they do wrong."""
+"""By their errors."""
 
 
 class Patched(importlib.abc.MetaPathFinder, SourceFileLoader):
     """Imports one module with its source changed."""
 
     def __init__(self, mutant: Mutant) -> None:
-        """Stand before the other finders; raises LookupError where the text is not in the source once."""
+        """Come before the other finders; raises LookupError unless the source has the text exactly once."""
         package, *inner = mutant.module.split(".")
-        found = importlib.util.find_spec(package)  # of the module itself it would import what it stands in
+        found = importlib.util.find_spec(package)  # the module's own spec would import it
         if found is None or found.origin is None:
             raise LookupError(f"no source of {mutant.module}")
         source = Path(found.origin).parent.joinpath(*inner).with_suffix(".py")
@@ -156,16 +156,16 @@ class Patched(importlib.abc.MetaPathFinder, SourceFileLoader):
 
 
 def survivors(names: Sequence[str], made: Sequence[Made], known: Set[Key], folder: Path) -> list[str]:
-    """Return the mutants that the comparison of no run notices, beyond what is ``known`` without them.
+    """Return the mutants that no run's comparison detects, beyond what is ``known`` without them.
 
-    Runs are tried one after the other: a run without a doubt shows nothing of a doubt that is dropped. Raises
-    RuntimeError where a mutant cannot be tried.
+    Runs are tried in turn: a run without a doubt cannot show that a doubt is dropped. Raises RuntimeError if a mutant
+    cannot be tried.
     """
     return [name for name in names if not any(_noticed(name, one, folder) - known for one in made)]
 
 
 def _noticed(name: str, made: Made, folder: Path) -> Set[Key]:
-    """Return what outputs of a run contradict one another about, with a mutant in place."""
+    """Return the contradictions between a run's outputs with a mutant in place."""
     chosen = folder / "mutated.pickle"
     chosen.write_bytes(pickle.dumps(made))
     command = [sys.executable, "-m", _MODULE, name, str(chosen)]

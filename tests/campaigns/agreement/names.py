@@ -1,7 +1,6 @@
-"""Which quantity a heading stands for, whatever the output.
+"""The quantity of each heading, in any output.
 
-A heading that is not listed is its own quantity, in plain lower case: a new column is compared wherever it has the
-same heading.
+An unlisted heading is its own quantity, in lower case: a new column is compared wherever it has the same heading.
 """
 
 from __future__ import annotations
@@ -12,9 +11,9 @@ from typing import Final
 from tests.campaigns.agreement.record import plain_heading
 
 MU: Final = "mu"
-"""The coefficient at the temperature asked for."""
+"""The coefficient at the requested temperature."""
 MU_MEASURED: Final = "mu as measured"
-"""The coefficient at the mean temperature that was measured."""
+"""The coefficient at the measured mean temperature."""
 U_THIS, U_COMPOUND = "U this piece", "U compound"
 FLAGS, DOUBTS, MARK, STATUS, REASON = "flags", "doubts", "mark", "status", "reason"
 ASKED, MADE, VALID, LEFT_OUT, MAKE_UPS = "asked", "made", "valid", "left out", "make-ups"
@@ -73,7 +72,7 @@ _NAMES: Final = {
 
 
 def quantity_of(heading: str, worn: str) -> str:
-    """Return the quantity that a heading stands for; ``worn``: what the kind calls the piece that wears."""
+    """Return the quantity of a heading; ``worn``: what the kind calls the piece that wears."""
     plain = plain_heading(heading).replace("μ", "mu").replace("±", "").replace("(%)", "%")
     plain = plain.removesuffix(f" this {worn}") + " this" if plain.endswith(f" this {worn}") else plain
     plain = re.sub(rf"\bthis {re.escape(worn)}\b", "this", plain).strip()

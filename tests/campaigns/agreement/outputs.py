@@ -1,4 +1,4 @@
-"""Every output of a stored run, called for and read: commands, tables, page, drawings, screens."""
+"""Requests and reads every output of a stored run: commands, tables, page, drawings, screens."""
 
 from __future__ import annotations
 
@@ -25,15 +25,15 @@ COMMANDS, TABLES, REPORT, SCREENS, PAGE = "commands", "tables", "report", "scree
 PARTS = (COMMANDS, TABLES, REPORT, SCREENS, PAGE)
 """Outputs of one run, by how they are made."""
 SEVERAL = "several"
-"""Outputs that hold runs against each other."""
+"""Outputs that compare runs."""
 REPORTED = 4
-"""Of so many pairs of runs that are compared one has a report, too."""
+"""One in so many compared pairs of runs also gets a report."""
 FORMATS = ("appendix", "conditions", "budget", "repeats", "directions", "wheel", "pieces", "wear", "reference")
 WORN = {"wheel_on_belt": "wheel", "specimen_on_track": "specimen"}
 
 
 def facts_of(made: Made, reports: Path, parts: Sequence[str] = PARTS) -> Iterator[Facts]:
-    """Yield the facts of every output of a run; of one that fails, that it fails."""
+    """Yield the facts of every output of a run; for an output that fails, the failure."""
     record = read_record(made.folder)
     worn = WORN[record.kind]
     page = reports / f"{record.name}.html"
@@ -50,10 +50,10 @@ def facts_of(made: Made, reports: Path, parts: Sequence[str] = PARTS) -> Iterato
 
 
 def _whole(read: Callable[[], Iterator[Facts]], name: str) -> Iterator[Facts]:
-    """Yield what a reader yields; an output that cannot be made or read is a disagreement of its own."""
+    """Yield what a reader yields; an output that cannot be made or read counts as a disagreement."""
     try:
         yield from read()
-    except Exception as error:  # noqa: BLE001 - whatever an output fails with is what the campaign is looking for
+    except Exception as error:  # noqa: BLE001 - the campaign looks for any failure of an output
         last = extract_tb(error.__traceback__)[-1]
         yield Facts(name, strange=[f"fails: {error!r} at {Path(last.filename).name}:{last.lineno}"])
 
@@ -85,7 +85,7 @@ def _tables(record: Record, worn: str) -> Iterator[Facts]:
         called("export", str(record.folder), "--format", "xlsx", "--out", str(book))
         sheets = sheets_of(book)
     for name in FORMATS:
-        if name in sheets and name != "appendix":  # a cell has no trailing zeros, by which its digits could be told
+        if name in sheets and name != "appendix":  # a cell has no trailing zeros to show its number of digits
             yield read_table(record, worn, name, sheets[name], f"xlsx {name}")
 
 
@@ -116,7 +116,7 @@ def _of_all(canvas: object) -> bool:
 
 
 def facts_of_several(made: Sequence[Made], reports: Path) -> Iterator[Facts]:
-    """Yield the facts of what holds runs of one folder against each other: list, comparisons, report of several."""
+    """Yield the facts of outputs that compare the runs of one folder: list, comparisons, report of several."""
     records = [read_record(one.folder) for one in made]
     yield from _whole(partial(_listed, records), "runs")
     alike = sorted(records, key=lambda record: record.kind)

@@ -1,4 +1,4 @@
-"""What is drawn: points and bars as matplotlib has them on its canvas, and the numbers written into surfaces."""
+"""Drawings: points and bars on matplotlib's canvas, and the numbers written into surfaces."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ from tests.campaigns.agreement.names import MU, U_THIS
 from tests.campaigns.agreement.record import Record, RecordedAxis, plain_heading
 
 _DRAWN = 1e-9
-"""Relative error of a number on a canvas: a bar is kept by its two ends."""
+"""Relative error of a number on a canvas: a bar is stored as its two ends."""
 _FLAT = 1e-6
 """Smallest length of a bar that counts, in units of the coefficient."""
 
 
 @contextmanager
 def canvases() -> Iterator[list[Any]]:
-    """Collect the canvases that are written meanwhile."""
+    """Collect the canvases written inside the block."""
     from matplotlib.figure import Figure
 
     collected: list[Any] = []
@@ -40,8 +40,7 @@ def canvases() -> Iterator[list[Any]]:
 def read_canvases(records: Sequence[Record], drawn: Sequence[Any], output: str) -> Facts:
     """Return the facts of drawings of one run, or of several in one picture.
 
-    A point belongs to a condition that is held where it is drawn; where several are, to the one of the nearest
-    coefficient.
+    A point belongs to the condition with its setpoint; if there are several, to the one with the nearest coefficient.
     """
     facts = Facts(output)
     for canvas in drawn:
@@ -108,7 +107,8 @@ def _is(value: float | str | None, x: float) -> bool:
 
 
 def _take(facts: Facts, record: Record, rows: Sequence[int], y: float, bar: float, where: str) -> None:
-    """Add a point to the facts of a row, where there is only one. Of several rows any may be meant (``NEAREST``)."""
+    """Add a point to the facts of a row if there is only one. Of several rows, any may be the right one
+    (``NEAREST``)."""
     if not rows:
         facts.strange.append(f"no condition is like this point: {where}, {y:.4f}")
         return
@@ -132,7 +132,7 @@ def _surface(facts: Facts, records: Sequence[Record], place: Any) -> None:
 
 
 def _overview(facts: Facts, records: Sequence[Record], place: Any) -> None:
-    """Read the strip of coefficients: a point stands at half the time that its condition took."""
+    """Read the strip of coefficients: a point is at half of the time that its condition took."""
     if plain_heading(place.get_ylabel()) != "coefficient":
         return
     for label, points in _points(place):
@@ -160,7 +160,7 @@ def _condition_at(records: Sequence[Record], minute: float) -> Subject | None:
 
 
 def _repeats(facts: Facts, records: Sequence[Record], place: Any, title: str) -> None:
-    """Read the title of a picture of repeats; its points are compared by the hover texts of the page."""
+    """Read the title of a plot of repeats; the hover texts of the page serve to compare its points."""
     match = re.fullmatch(r"repeats of (.+): (-?[\d.]+) ± ([\d.]+)", title)
     if match is None:
         return

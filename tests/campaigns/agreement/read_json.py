@@ -58,7 +58,7 @@ def read_show_json(record: Record, worn: str, text: str, output: str) -> Facts:
 
 
 def _subject(record: Record, combined: TableReader, condition: Json) -> Subject | None:
-    """Return what a record is of: a condition by its number, what stands for replicates by its setpoint."""
+    """Return the subject of a record: a condition by its number, a row of replicates by its setpoint."""
     if condition["condition"] is not None:
         return record.of_condition(condition["condition"])
     cells = {plain_heading(key): str(value) for key, value in condition.items()}
@@ -90,9 +90,9 @@ def _term(facts: Facts, subject: Subject, term: Json, worn: str) -> None:
 
 
 def read_events(record: Record, text: str, output: str) -> Facts:
-    """Return the facts of what `tester run --json` writes while it runs: conditions that are over at every step.
+    """Return the facts of what `tester run --json` writes while it runs: number of finished conditions at every step.
 
-    Only of a run in one part, whose times are those of its record.
+    Only for a run in one part, whose times agree with its record.
     """
     facts = Facts(output)
     for line in text.splitlines():
@@ -106,7 +106,7 @@ def read_events(record: Record, text: str, output: str) -> Facts:
 
 
 def times_of(record: Record, text: str) -> Facts:
-    """Return what the record has of the same moments."""
+    """Return the record's facts at the same moments."""
     facts = Facts("record")
     for line in text.splitlines() if record.is_one_part else ():
         event = json.loads(line)

@@ -24,12 +24,12 @@ _X = "{http://www.w3.org/1999/xhtml}"
 
 
 class PageError(Exception):
-    """The page is no well-formed HTML."""
+    """The page is not well-formed HTML."""
 
 
 def page(text: str) -> Element:
-    """Return the root of a page; raises PageError for the first thing that is not as HTML wants it."""
-    import html5lib  # not an extra of the package: .ci/run installs it, and the other outputs are read without it
+    """Return the root of a page; raises PageError for the first violation of HTML."""
+    import html5lib  # not an extra of the package: .ci/run installs it; the other outputs do not need it
 
     parser = html5lib.HTMLParser(strict=True)
     try:
@@ -158,14 +158,14 @@ _REPEAT = re.compile(r"repeat (?P<condition>\d+)/(?P<repeat>\d+): (?P<mu>-?\d+\.
 
 
 def hovers(element: Element) -> Iterator[str]:
-    """Yield the texts that a drawing shows for its points."""
+    """Yield the hover texts of a drawing's points."""
     for one in element.iter():
         if isinstance(one.tag, str) and one.tag.endswith("}title") and not one.tag.startswith(_X):
             yield _text(one).replace("\u00a0", " ")
 
 
 def _pictures(facts: Facts, records: Sequence[Record], chapter: Element) -> None:
-    """Read what is written beside the points of the drawings."""
+    """Read the texts beside the points of the drawings."""
     names = {record.name: record for record in records}
     for figure in chapter.iter(f"{_X}figure"):
         for text in hovers(figure):
@@ -173,7 +173,7 @@ def _pictures(facts: Facts, records: Sequence[Record], chapter: Element) -> None
 
 
 def read_hover(facts: Facts, names: dict[str, Record], text: str) -> None:
-    """Read what stands beside a point: which condition or repeat, the coefficient, U."""
+    """Read the text beside a point: which condition or repeat, the coefficient, U."""
     if text.startswith("as published"):
         return
     if match := _REPEAT.fullmatch(text):
@@ -193,7 +193,7 @@ def read_hover(facts: Facts, names: dict[str, Record], text: str) -> None:
     else:
         rows = record.in_words(match["words"])
         if len(rows) != 1:
-            return  # a setting that several rows share is told apart by its number alone
+            return  # only the number distinguishes rows that share a setting
         subject = record.of_row(rows[0])
     facts.number(subject, MU, match["mu"])
     facts.number(subject, U_THIS, match["u"] or "-")

@@ -16,7 +16,7 @@ _EDGE = "│"
 
 
 def boxes(text: str) -> dict[str, list[str]]:
-    """Return what stands in the boxes of a screen that are as wide as the screen, by their titles."""
+    """Return the contents of a screen's full-width boxes, by title."""
     found: dict[str, list[str]] = {}
     title = ""
     for line in text.splitlines():
@@ -31,7 +31,7 @@ def boxes(text: str) -> dict[str, list[str]]:
 
 
 def cells_of(header: str, line: str) -> list[str]:
-    """Return the cells of a line below the headings of a table whose columns begin where these do."""
+    """Return the cells of a line below a table's headings; columns begin where the headings begin."""
     starts = [match.start() for match in re.finditer(r"(?:(?<=  )|^ ?)\S", header)]
     starts = [at + len(header[at:]) - len(header[at:].lstrip()) for at in starts]
     return [line[begin:end].strip() for begin, end in pairwise([*starts, len(line) + 1])]
@@ -117,7 +117,7 @@ def read_repeats(record: Record, worn: str, condition: int, text: str, output: s
 
 
 def _heading(lines: Sequence[str]) -> str:
-    """Return the condition's own line, which the dialog wraps; "word (weight): meaning" of each flag follows it."""
+    """Return the condition's line, which the dialog wraps; "word (weight): meaning" of each flag follows it."""
     begin = next((at for at, line in enumerate(lines) if re.search(r"  mu [\d.–]", line)), len(lines))
     whole = [*lines[begin : begin + 1]]
     for line in lines[begin + 1 :]:
@@ -133,7 +133,7 @@ _STEP = re.compile(r"([✔▶·]) (\S.*?)\s+(~?\d+:\d\d(?::\d\d)?)\s*[│┃]")
 
 
 def moment(facts: Facts, record: Record, at: str, text: str) -> None:
-    """Read a moment of a run from the Run screen: what is done, what is left, the list of steps."""
+    """Read a moment of a run from the Run screen: conditions done, time left, the list of steps."""
     subject = ("moment", record.name, at)
     if match := _COND.search(text):
         facts.count(subject, "conditions done", match.group(1))
@@ -150,7 +150,7 @@ _STEP_VALUE = re.compile(r"✔ (\S.*?)\s+(-?\d\.\d+[?!]?) ± (\d\.\d+)")
 
 
 def read_steps(record: Record, worn: str, text: str, output: str) -> Facts:
-    """Return the facts of the list of steps: mu and U of each finished condition whose words no other has."""
+    """Return the facts of the list of steps: mu and U of each finished condition with unique words."""
     facts = Facts(output)
     reader = TableReader(facts, record, worn)
     for match in _STEP_VALUE.finditer(text):
@@ -165,5 +165,5 @@ def read_steps(record: Record, worn: str, text: str, output: str) -> Facts:
 
 
 def done_by(record: Record, at_s: float) -> int:
-    """Return how many conditions were over at a time of the rig."""
+    """Return how many conditions were finished at a rig time."""
     return sum(one.ended_s is not None and one.ended_s <= at_s for one in record.conditions)

@@ -1,5 +1,5 @@
-"""What the page in a browser is sent of a stored run (its questions `run` and `condition`), and what every screen is
-sent while a run is under way: through JSON and back.
+"""What the service sends to the page in a browser about a stored run (its requests `run` and `condition`), and to every
+screen during a run: through JSON and back.
 """
 
 from __future__ import annotations
@@ -15,7 +15,7 @@ from tests.campaigns.agreement.table import TableReader
 
 
 def read_stored(record: Record, output: str) -> Facts:
-    """Return the facts of the page's answers: numbers in full, and in the digits that people see."""
+    """Return the facts of the page's answers: numbers in full, and in the displayed digits."""
     # Imported now: a mutant changes its module while that is imported, and the page imports many.
     from tester.page.stored.asked import answer
     from tester.page.stored.run_cache import RunCache
@@ -43,7 +43,7 @@ def read_stored(record: Record, output: str) -> Facts:
 
 
 def read_live(record: Record, worn: str, output: str) -> Facts:
-    """Return the facts of the service's message ``results``: what conditions gave, how each had grown at its end."""
+    """Return the facts of the service's message ``results``: the result of each condition, and its state at its end."""
     from tester.results.conditions_table import conditions_table
     from tester.results.run_results import results_of
     from tester.service.present_results import PresentResults, grown_view
@@ -71,7 +71,7 @@ def read_live(record: Record, worn: str, output: str) -> Facts:
 
 
 def _text(facts: Facts, reader: TableReader, at: Subject, text: str) -> None:
-    """Read mu with its mark, and U, as people see them."""
+    """Read mu with its mark, and U, as displayed."""
     mu, sign, u = text.partition(" ± ")
     if sign:
         reader.cell(at, MU, mu)

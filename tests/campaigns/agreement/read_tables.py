@@ -15,7 +15,7 @@ from tests.campaigns.agreement.table import TableReader
 SEVEN = 7
 """Significant digits of a number in a table, trailing zeros left out."""
 _PREFIX = {"reference": "reference "}
-"""Tables whose columns are about something else than the condition as a whole."""
+"""Tables whose columns do not describe the condition as a whole."""
 _OF_CONDITIONS = ("conditions", "reference")
 _PIECES = ("wheel", "pieces")
 _APPENDIX = "appendix"
@@ -55,7 +55,7 @@ def read_table(record: Record, worn: str, name: str, text: str, output: str) -> 
         _conditions(TableReader(facts, record, worn, SEVEN, _PREFIX.get(name, "")), headings, rows)
     elif name == _APPENDIX:
         TableReader(facts, record, worn).read(headings, rows)
-        # The paper's table has bare numbers: that no mark stands beside them says nothing.
+        # The paper's table has bare numbers: a missing mark means nothing.
         facts.collected[:] = [fact for fact in facts.collected if fact.quantity != MARK]
     return facts
 

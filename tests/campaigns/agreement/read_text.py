@@ -1,4 +1,4 @@
-"""What commands print for people: the end of a run, `show`, `show --budget`, `compare`, `runs`."""
+"""Printed text of commands: the end of a run, `show`, `show --budget`, `compare`, `runs`."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _conditions(facts: Facts, record: Record, worn: str, lines: Sequence[str]) -
 
 
 def _rows(lines: Sequence[str], columns: int) -> list[tuple[list[str], str]]:
-    """Return the rows of a table's body with their remarks, which may stand in lines of their own."""
+    """Return the rows of a table's body with their remarks, which may be on lines of their own."""
     found: list[tuple[list[str], str]] = []
     for line in lines:
         cells = [text for _, _, text in columns_of(line)]
@@ -66,7 +66,7 @@ def _counted(facts: Facts, record: Record, line: str) -> None:
 
 
 def read_tally(facts: Facts, record: Record, text: str) -> None:
-    """Read in a sentence how many conditions have a value, and how many of these carry a doubt or a note."""
+    """Read from a sentence how many conditions have a value, and how many of these have a doubt or a note."""
     if match := re.match(r"All (\d+) conditions have a value|(The condition) has a value", text):
         total = match.group(1) or "1"
         values = (total, total)
@@ -97,7 +97,7 @@ def read_show(record: Record, worn: str, text: str, output: str) -> Facts:
 
 
 BUDGET = re.compile(r"(?P<words>\S.*?): mu (?P<mu>\S+), mu as measured (?P<measured>\S+)")
-"""What stands over the terms of a budget, on a terminal and in a report."""
+"""Heading above the terms of a budget, on a terminal and in a report."""
 OF_BUDGET = re.compile(
     r"U (?P<what>this [a-z]+|compound) (?P<u>[\d.]+|–)(?:, (?P<percent>[\d.]+|–)(?: %)?)?, "
     r"k (?:compound )?(?P<k>[\d.]+|–)"
@@ -144,7 +144,7 @@ _OF_TERM = {
 
 
 def term(facts: Facts, subject: Subject, worn: str, cells: Mapping[str, str]) -> None:
-    """Read a term of a budget for people."""
+    """Read a printed term of a budget."""
     for head, quantity in (*_OF_TERM.items(), (f"this {worn} (%)", "share this %")):
         if head in cells:
             facts.number(subject, f"{cells['term']}: {quantity}", cells[head])

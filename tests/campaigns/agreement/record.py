@@ -1,6 +1,6 @@
-"""A run's record as the campaign reads it: straight from SQLite, only what tells a condition or a repeat from another.
+"""A run's record as the campaign reads it: directly from SQLite, only what identifies a condition or a repeat.
 
-None of the product's code takes part: a parser that finds its way by the product's own tables cannot see them wrong.
+It uses none of the product's code: a parser that relies on the product's own tables cannot find errors in them.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ _REFERENCE_KEY, _REFERENCE_GRID = "reference_every", "reference"
 
 @dataclass(frozen=True, slots=True)
 class RecordedAxis:
-    """An axis of the recipe's conditions, with every heading that stands for it."""
+    """An axis of the recipe's conditions, with all headings used for it."""
 
     name: str
     field: str
@@ -31,7 +31,7 @@ class RecordedAxis:
 
 @dataclass(frozen=True, slots=True)
 class RecordedCondition:
-    """A condition by its numbers and what it is held at, in the axes' units as people read them."""
+    """A condition: its numbers and its setpoint, in the axes' displayed units."""
 
     number: int
     row: int
@@ -83,7 +83,7 @@ class Record:
         return rows
 
     def is_reference(self, row: int) -> bool:
-        """Tell whether a row is a reference condition."""
+        """Return whether a row is a reference condition."""
         return self.has_references and self.rows[row][0].grid == _REFERENCE_GRID
 
     def of_condition(self, number: int) -> Subject:
@@ -91,7 +91,7 @@ class Record:
         return "condition", self.name, number
 
     def of_row(self, row: int) -> Subject:
-        """Return a row as a subject: its condition where it has no replicates."""
+        """Return a row as a subject: its condition if it has no replicates."""
         replicates = self.rows[row]
         if len(replicates) == 1:
             return self.of_condition(replicates[0].number)
@@ -102,7 +102,7 @@ class Record:
         return "repeat", self.name, condition, repeat
 
     def axis_of(self, heading: str) -> RecordedAxis | None:
-        """Return the axis that a heading stands for."""
+        """Return the axis of a heading."""
         plain = plain_heading(heading)
         return next((axis for axis in self.axes if plain in axis.headings), None)
 
@@ -118,7 +118,7 @@ class Record:
     def in_words(self, text: str, shared: str = "") -> list[int]:
         """Return the rows whose compound and setpoint a text names: "1#, 300 mm/s, 100 N, 25 degC".
 
-        An axis that the text does not mention matches anything. ``shared``: what the text leaves out.
+        An axis that the text does not mention matches any value. ``shared``: what the text leaves out.
         """
         parts = [part.strip() for part in f"{text}, {shared}".split(",") if part.strip()]
         return [row for row, replicates in self.rows.items() if _is_named(replicates[0], self.axes, parts)]
@@ -130,7 +130,7 @@ def _is_named(condition: RecordedCondition, axes: Sequence[RecordedAxis], parts:
 
 
 def _is_at(condition: RecordedCondition, axis: RecordedAxis, part: str) -> bool:
-    """Tell whether a part of a condition's words, "300 mm/s" or "sideslip 10 deg", is what an axis is set to."""
+    """Return whether a part of a condition's text, "300 mm/s" or "sideslip 10 deg", is the setpoint of an axis."""
     value = condition.setpoint.get(axis.name)
     if value is None or isinstance(value, str):
         return value == part

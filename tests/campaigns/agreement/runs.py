@@ -1,7 +1,6 @@
-"""Makes the runs that outputs are read from: short recipes drawn at random, each through a scene of laboratory life.
+"""Makes the runs whose outputs are read: random short recipes, each with a scene of laboratory life.
 
-A run is made by `tester` in a process of its own, as a user makes it. Nothing here chooses a seed: each comes from the
-base seed of the campaign.
+Each run is a `tester` process of its own, as a user starts it. Every seed comes from the base seed of the campaign.
 """
 
 from __future__ import annotations
@@ -18,12 +17,12 @@ _TIMEOUT_S = 900.0
 
 
 class RunError(Exception):
-    """A run of the campaign could not be made."""
+    """A run of the campaign failed."""
 
 
 @dataclass(frozen=True, slots=True)
 class Made:
-    """A run on disk. ``printed``: what the command that made it wrote for people; "" where the record changed since."""
+    """A run on disk. ``printed``: text output of its command; "" if the record has changed since."""
 
     folder: Path
     seed: int
@@ -32,12 +31,12 @@ class Made:
     sweep: Path | None = None
     """Conditions of a sweep that has the same recipe and seed."""
     events: str = ""
-    """What the command wrote for programs, with --json."""
+    """The command's output with --json."""
 
 
 @dataclass
 class Laboratory:
-    """Where runs are made: a folder, the Python of the installation that makes them, the dice."""
+    """Makes runs: a folder, the Python of the installation, a random source."""
 
     folder: Path
     python: str
@@ -48,7 +47,7 @@ class Laboratory:
     options: tuple[str, ...] = field(default=())
 
     def tester(self, *arguments: str, stop_at: float | None = None) -> subprocess.CompletedProcess[str]:
-        """Carry out `tester ARGUMENTS`; ``stop_at``: share of a run at which a person stops it."""
+        """Carry out `tester ARGUMENTS`; ``stop_at``: share of a run after which a person stops it."""
         share = 2.0 if stop_at is None else stop_at
         command = [self.python, str(STOPPING), f"{share}", *arguments]
         return subprocess.run(
@@ -57,7 +56,7 @@ class Laboratory:
         )  # fmt: skip
 
     def run(self, *options: str, stop_at: float | None = None) -> Made:
-        """Run the recipe; raises RunError where no run begins."""
+        """Run the recipe; raises RunError if no run begins."""
         recipe = self.folder / "recipe.yaml"
         recipe.write_text(self.text, encoding="utf-8")
         done = self.tester(
@@ -67,7 +66,7 @@ class Laboratory:
         return self._made(done)
 
     def resume(self, made: Made) -> Made:
-        """Go on with a run."""
+        """Resume a run."""
         return replace(self._made(self.tester("resume", str(made.folder), "--yes")), scene=made.scene)
 
     def _made(self, done: subprocess.CompletedProcess[str]) -> Made:
@@ -86,7 +85,7 @@ def wheel_recipe(
 ) -> str:
     """Return a recipe of few conditions for a wheel: loads at one slip velocity and temperature, nothing ground in.
 
-    The temperature asked for is some degrees above the room's, so that the mean that is measured is another.
+    The requested temperature is some degrees above room temperature, so that the measured mean differs.
     """
     chosen = random.sample(["1#", "2#", "3#"], compounds)
     specimens = ", ".join(f'{{compound: "{one}"}}' for one in chosen)
@@ -168,7 +167,7 @@ def _parts(lab: Laboratory) -> Made:
 
 
 def _tight(lab: Laboratory) -> Made:
-    """Ask for a band of temperature that friction leaves at once: a condition without a value."""
+    """Request a temperature band that friction leaves at once: a condition without a value."""
     hurry = ", max_bursts: 3, soak: {within: 0.2 degC, for: 20 s, at_most: 10 min}"
     lab.text = wheel_recipe(lab.random, measure=hurry, band=0.3)
     return lab.run()
@@ -289,7 +288,7 @@ SCENES: dict[str, Scene] = {
     "disc, swept": _disc_swept,
     "swept": _swept,
 }
-"""What happens to a run, by name; runs take them in turn."""
+"""Scenes by name; runs take them in turn."""
 
 
 def make_runs(folder: Path, base: int, names: Iterator[str], python: str = sys.executable) -> Iterator[Made]:

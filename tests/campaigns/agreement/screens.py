@@ -1,4 +1,4 @@
-"""The screens over a stored run, driven as a person does, as text."""
+"""The screens of a stored run as text, operated as by a person."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ _WAIT_S = 60.0
 _STEP_S = 0.5
 """Each step of a list is shown in whole seconds."""
 _SHARES = (0.1, 0.35, 0.6, 0.85, 1.0)
-"""Moments of a replay that are looked at, shares of the run."""
+"""Examined moments of a replay, as shares of the run."""
 
 
 def screens(record: Record, worn: str) -> Iterator[Facts]:
@@ -68,7 +68,7 @@ async def _replayed(record: Record, worn: str) -> list[Facts]:
             text = await until(lambda text: "repeat 1:" in text or "no repeat is committed" in text)
             found.append(read_repeats(record, worn, row.condition, text, "screen repeats"))
             if sum(condition == row.condition for condition, _ in record.repeats) > _LISTED:
-                await pilot.press("end")  # what does not fit is scrolled to
+                await pilot.press("end")  # scroll to the rest
                 await pilot.pause()
                 found.append(read_repeats(record, worn, row.condition, screen_text(app), "screen repeats"))
             await pilot.press("escape")

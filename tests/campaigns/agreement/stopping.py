@@ -1,7 +1,7 @@
-"""`tester`, with a person who presses the key for STOP once a share of the run's time is done.
+"""`tester`, with a person who presses the STOP key after a share of the run's time.
 
-Run as a file, by the Python of any installation: python stopping.py SHARE run RECIPE ... A run that is over before is
-not stopped.
+Run as a file, by the Python of any installation: python stopping.py SHARE run RECIPE ... A run that ends earlier is not
+stopped.
 """
 
 from __future__ import annotations
@@ -15,14 +15,14 @@ from tester.machine.time_left import RunPosition
 
 
 class Stopping(console.Console):
-    """A console at which somebody is impatient."""
+    """A console with an impatient operator."""
 
     at_share = 1.0
     pressed = False
     done = 0.0
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Keep how far the run is."""
+        """Store the run's progress."""
         self.done = at.share
         super().show(now_s, run, at)
 

@@ -15,7 +15,7 @@ IDENTITY = frozenset(
     {"condition", "no.", "repeat", "attempt", "compound", "formula", "specimen", "replicate", "grid", "note", "level",
      "row", "wheel", "piece", "record head", "run", "seed", "accepted risk"}
 )  # fmt: skip
-"""Headings of what says which row it is: no statement about a result."""
+"""Headings that identify the row: no statement about a result."""
 STATUSES = (
     "ok", "not measured", "insufficient", "temperature cannot be held", "not reached", "skipped",
 )  # fmt: skip
@@ -30,7 +30,7 @@ class TableReader:
     worn: str
     significant: int = 0
     prefix: str = ""
-    """Before the name of a quantity that is not about a condition as a whole."""
+    """Prefix of quantities that do not describe a condition as a whole."""
     used: set[int] = field(default_factory=set[int])
 
     def read(self, headings: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
@@ -73,7 +73,7 @@ class TableReader:
             self.facts.count(subject, name, count)
 
     def _flags(self, subject: Subject, quantity: str, cell: str) -> None:
-        """Read flags, before which a status may stand."""
+        """Read flags, optionally after a status."""
         words = [] if is_dash(cell) else [word.strip() for word in re.split("[,;]", cell)]
         for word in words:
             if word in STATUSES and word != "ok":
@@ -106,7 +106,7 @@ class TableReader:
         return self.next_of(self.record.matching(compound, setpoint))
 
     def next_of(self, rows: Sequence[int]) -> Subject | None:
-        """Return the first of some rows that no line has stood for so far."""
+        """Return the first of some rows that no line has used so far."""
         for row in rows:
             if row not in self.used:
                 self.used.add(row)
@@ -115,18 +115,18 @@ class TableReader:
 
 
 def columns_of(line: str) -> Iterator[tuple[int, int, str]]:
-    """Yield the texts of a line that two spaces or more set apart, each with where it begins and ends."""
+    """Yield the texts of a line that two or more spaces separate, each with its begin and end."""
     for match in re.finditer(r"\S+(?: \S+)*", line):
         yield match.start(), match.end(), match.group()
 
 
 def headings_of(first: str, second: str) -> list[str]:
-    """Return the headings of a table of right-aligned columns whose names stand in two lines."""
+    """Return the headings of a table of right-aligned columns whose names take two lines."""
     upper, lower = [*columns_of(first)], [*columns_of(second)]
     edges = sorted({end for _, end, _ in upper} | {end for _, end, _ in lower})
     merged: list[int] = []
     for edge in edges:
-        if merged and edge - merged[-1] <= 1:  # a mark's place beside a coefficient
+        if merged and edge - merged[-1] <= 1:  # room for a mark beside a coefficient
             merged[-1] = edge
         else:
             merged.append(edge)
