@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.browser [--sample] [--runs FOLDER]`: what the page takes in a real browser.
+"""`python -m tests.campaigns.browser [--sample] [--runs FOLDER]`: speed and memory of the page in a real browser.
 
 A stored run of 1e6 samples, before the real page process: its first picture, and zooms. A map of 165 conditions, six
-runs of 165 laid over each other: with ``--runs``, of at least six such runs stored in that folder, through the page
-process; else the browser's part alone, of answers that are played. A page that stays open beside a run. Prints a line
-a figure; exit code 1 where one misses. Needs Chromium and the extra `browser`; without them it says so, exit code 0.
+runs of 165 laid over each other: with ``--runs``, from at least six such runs stored in that folder, through the page
+process; otherwise the browser's part alone, from prepared answers. A page that stays open during a run. Prints a line a
+figure; exit code 1 where one misses. Needs Chromium and the extra `browser`; without them it prints that, exit code 0.
 """
 
 from __future__ import annotations
@@ -49,20 +49,20 @@ BARE = """() => {
 }"""
 """A bare loop, which shows how much of a core the browser gets."""
 SNAPSHOTS_A_RIG_HOUR = 240
-"""At 60 times, four a second."""
+"""At 60 times the speed, four a second."""
 PACE_S = 0.02
-"""Time between two snapshots of the open page: it draws each of them, and the hours pass in minutes."""
+"""Time between two snapshots of the open page: it draws each of them, so hours pass in minutes."""
 DRAWN = """(wanted) => new Promise((done) => {
   const begun = performance.now();
   const painted = () => done(performance.now() - begun);
   const look = () => requestAnimationFrame(wanted() ? painted : look);
   look();
 })"""
-"""Counts until something is on the page and has been painted, ms."""
+"""Measures the time until something is painted on the page, ms."""
 
 
 def enlarged(folder: Path, samples: int) -> None:
-    """Repeat a stored run's samples, later each time, until it has so many."""
+    """Append shifted copies of a stored run's samples until it has so many."""
     with RunReader(folder) as reader:
         columns = len(reader.quantities().names)
     store = sqlite3.connect(folder / "run.db")
@@ -82,7 +82,7 @@ def enlarged(folder: Path, samples: int) -> None:
 
 
 def timed(page: Page, action: str, wanted: str) -> float:
-    """Run a script and return how long it takes until something is on the page, ms."""
+    """Run a script and return the time until something is on the page, ms."""
     return float(page.evaluate(f"() => {{ {action}; return ({DRAWN})(() => {wanted}); }}"))
 
 
@@ -208,7 +208,7 @@ def heap(served: Front, launched: Browser, hours: int) -> list[Figure]:
     pass_time(0, SNAPSHOTS_A_RIG_HOUR)
     before = used_mb()
     pass_time(SNAPSHOTS_A_RIG_HOUR, hours * SNAPSHOTS_A_RIG_HOUR)
-    drawn = page.locator(".about-run").inner_text()  # before garbage is collected: two seconds without news are stale
+    drawn = page.locator(".about-run").inner_text()  # before garbage collection: data go stale in 2 s
     after = used_mb()
     context.close()
     return [
@@ -242,7 +242,7 @@ def sizes() -> list[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure everything; 1 where a figure misses."""
+    """Measure everything; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.browser", description=__doc__)
     parser.add_argument("--sample", action="store_true", help="2 rig hours of an open page instead of 24")
     parser.add_argument("--runs", type=Path, help="folder with at least six stored runs of 165 conditions")

@@ -2,9 +2,9 @@
 
 Each seed draws a rubber (a Prony series, a WLF shift of its own, a sweep of a few frequencies) and the spectrum of a
 surface. A laboratory's way through the commands follows: import the sweep, write surface and recipe, check, run on the
-simulated track, which rubs by Persson's theory on those two files, fit a law and keep it, predict with it, draw it.
-Nothing may fail. A second run of the same specimen, at speeds and temperatures between those of the first, is held
-against what the kept law predicts: 95 % of its conditions have to be inside the interval.
+simulated track, which rubs by Persson's theory on those two files, fit a law and keep it, predict with it, draw it. No
+command may fail. A second run of the same specimen, at speeds and temperatures between those of the first, is compared
+with the kept law's prediction: 95 % of its conditions must be inside the interval.
 """
 
 from __future__ import annotations
@@ -30,14 +30,15 @@ from tester.store.run_reader import RunReader
 
 SEEDS, SAMPLE_SEEDS = 20, 1
 INSIDE = 0.93, 0.97
-"""Share of held-out conditions inside the 95 % interval that is asked of all seeds together."""
+"""Required share of held-out conditions inside the 95 % interval, over all seeds together."""
 SPREAD = 2.6
-"""Standard deviations of a share of so few conditions by which a sample may be off [A]: 1 sample in 100 by chance."""
+"""Tolerance of a sample's share, in standard deviations of a share of so few conditions [A]: 1 sample in 100 by
+chance."""
 C1, C2_K = 17.44, 51.6
 """WLF's constants at the glass transition, about which those of a rubber are drawn."""
 FREQUENCIES_HZ = 0.3, 1.0, 3.0, 10.0, 30.0, 100.0
 OWN_LAW = "persson"
-"""Law for data of which the other says nothing: that of the rubber's and the surface's own files."""
+"""Law for data about which the other law says nothing: that of the rubber's and the surface's own files."""
 LOAD_N, AREA_MM2 = 20, 100
 FITTED = ([0, 10, 20, 30, 40, 50], ["1e-5", "1e-4", "1e-3", "1e-2"])
 HELD_OUT = ([5, 25, 45], ["3.162e-5", "3.162e-4", "3.162e-3"])
@@ -54,7 +55,7 @@ class Stranger(NamedTuple):
 
 
 class Told(NamedTuple):
-    """What came of a seed. ``errors``: commands that failed, with their last words."""
+    """The result of a seed. ``errors``: commands that failed, with their last words."""
 
     seed: int
     errors: tuple[str, ...]
@@ -76,7 +77,7 @@ def drawn(seed: int) -> Stranger:
     times = [middle - 7.0 + 0.5 * i for i in range(41)]
     weights = [draw.uniform(0.6, 1.4) * 10.0 ** (-(((t - middle) / width) ** 2) / 2.0) for t in times]
     scale = (glassy_mpa - rubbery_mpa) / sum(weights)
-    # Filled rubber loses energy on its plateau, too: slow modes of nearly equal weight.
+    # Filled rubber also loses energy on its plateau: slow modes of nearly equal weight.
     slow = rubbery_mpa * draw.uniform(0.1, 0.25)
     moduli = [scale * w + (slow if t > middle else 0.0) for w, t in zip(weights, times, strict=True)]
     lines = ["Temperature [degC],Frequency [Hz],E' [MPa],E'' [MPa]"]
@@ -126,7 +127,7 @@ class CommandError(Exception):
 
 
 def call(*words: str, allowed: tuple[int, ...] = (0,)) -> str:
-    """Call a command as a user does; return what it printed. Raises CommandError."""
+    """Call a command as a user does; return its output. Raises CommandError."""
     out, told = io.StringIO(), io.StringIO()
     with contextlib.redirect_stdout(out), contextlib.redirect_stderr(told):
         code = invoke(list(words))
@@ -137,7 +138,7 @@ def call(*words: str, allowed: tuple[int, ...] = (0,)) -> str:
 
 
 def measure(seed: int, folder: Path, law: str) -> Told:
-    """Go a laboratory's way with the compound of a seed. Raises CommandError."""
+    """Go through a laboratory's work with the compound of a seed. Raises CommandError."""
     stranger = drawn(seed)
     (folder / "sweep.csv").write_text(stranger.sweep, encoding="utf-8")
     (folder / "compounds").mkdir()
@@ -147,7 +148,7 @@ def measure(seed: int, folder: Path, law: str) -> Told:
          "-o", str(compound))  # fmt: skip
     text = compound.read_text(encoding="utf-8")
     assert text.count("moduli:\n") == 1
-    text = text.replace("moduli:\n", "moduli:\n  beyond: hold\n")  # a track slides from standstill on
+    text = text.replace("moduli:\n", "moduli:\n  beyond: hold\n")  # a track begins to slide from standstill
     compound.write_text(f"{text}Tg: {stranger.glass_c:.1f} degC\n", encoding="utf-8")
     (folder / "surfaces" / "strange-track.yaml").write_text(
         f"name: strange track\nspectrum: {stranger.spectrum}\n", encoding="utf-8"
@@ -162,7 +163,7 @@ def measure(seed: int, folder: Path, law: str) -> Told:
     fitted = str(next((folder / "fitted").iterdir()))
     kept = folder / "law.yaml"
     call("fit", fitted, "--law", law, "--area", f"{AREA_MM2} mm2", "-o", str(kept), allowed=(0, 1))
-    if not kept.exists():  # the conditions say nothing of a parameter
+    if not kept.exists():  # the conditions do not determine a parameter
         law = OWN_LAW
         call("fit", fitted, "--law", law, "--given", f"area={AREA_MM2}", "-o", str(kept), allowed=(0, 1))
     call("predict", "--law", str(kept), "--slip", "1 mm/s", "--load", f"{LOAD_N} N", "--temperature", "25 degC")
@@ -171,7 +172,7 @@ def measure(seed: int, folder: Path, law: str) -> Told:
 
 
 def held_against(seed: int, law: KeptLaw, run: Path) -> Told:
-    """Hold the measured coefficients of a run against a kept law's intervals."""
+    """Compare the measured coefficients of a run with a kept law's intervals."""
     with RunReader(run) as reader:
         found = results_of(reader)
     inside, off, wide = 0, [], []
@@ -188,7 +189,7 @@ def held_against(seed: int, law: KeptLaw, run: Path) -> Told:
 
 
 def one(seed: int, law: str) -> Told:
-    """Return what came of a seed."""
+    """Return the result of a seed."""
     with tempfile.TemporaryDirectory() as folder:
         try:
             return measure(seed, Path(folder), law)

@@ -1,1 +1,1 @@
-"""Is what a belt loses found, apart from what wheels do?"""
+"""Is a belt's loss of grip found, separately from the wheels' wear?"""

@@ -1,9 +1,10 @@
-"""`python -m tests.campaigns.belt [--sample] [--seeds N] [--jobs N]`: is what a belt loses found, apart from wheels?
+"""`python -m tests.campaigns.belt [--sample] [--seeds N] [--jobs N]`: is a belt's loss of grip found, apart from
+wheels?
 
 A belt loses 10 % of its grip over 2 km of travel under load. In made-up sets, and in runs on the simulated rig with
-wheels that wear three times as fast as believed: with six wheel changes, or a reserved wheel, the stated interval has
-to hold the loss; with one wheel the product has to say that it cannot tell. Prints a line a figure; exit status 1
-where one misses.
+wheels that wear three times as fast as believed: with six wheel changes, or a reserved wheel, the stated interval must
+contain the loss; with one wheel the product must state that it cannot separate the two. Prints a line a figure; exit
+status 1 where one misses.
 """
 
 from __future__ import annotations
@@ -21,13 +22,13 @@ from tests.campaigns.belt import sets, twin
 SETS, SAMPLE_SETS = 500, 200
 SEEDS, SAMPLE_SEEDS = 20, 1
 COVERED = (89.0, 99.0)
-"""Share of made-up sets whose interval holds the loss, per cent."""
+"""Share of made-up sets whose interval contains the loss, per cent."""
 OF_SEEDS = 0.8
 """Of the runs: 16 of 20."""
 
 
 def of_sets(count: int) -> Iterator[Figure]:
-    """Yield how many intervals of made-up sets hold the loss."""
+    """Yield how many intervals of made-up sets contain the loss."""
     low, high = COVERED
     for way in sets.WAYS:
         found = list(sets.drifts(way, count))
@@ -42,7 +43,7 @@ def of_sets(count: int) -> Iterator[Figure]:
 
 
 def of_twins(seeds: int, jobs: int, ways: Sequence[str]) -> Iterator[Figure]:
-    """Yield what became of runs on the simulated rig."""
+    """Yield the results of runs on the simulated rig."""
     cases = [twin.TwinCase(way, seed) for way in ways for seed in range(1, seeds + 1)]
     found: list[twin.TwinFound] = []
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
@@ -62,7 +63,7 @@ def of_twins(seeds: int, jobs: int, ways: Sequence[str]) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.belt", description=(__doc__ or "").partition("\n")[2])
     parser.add_argument("--sample", action="store_true", help="the short form, for every change")
     parser.add_argument("--seeds", type=int, metavar="N", help=f"runs of each way (default {SEEDS}); 0: sets alone")

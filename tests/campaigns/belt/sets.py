@@ -12,19 +12,19 @@ from tester.analysis.reference import PIECE_PER_M, CounterfaceDrift, KnownScatte
 LOSS, OVER_M = 0.10, 2000.0
 BETWEEN, REPEATS = 0.03, 0.02
 SLID_OF_TRAVEL = 0.05
-"""Metres that a wheel slides in a metre of the belt's travel under load, most of which is rolling [A]."""
+"""Metres of sliding per metre of the belt's travel under load, which is mostly rolling [A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Way:
-    """How references come about: on so many wheels in turn, or on one that is reserved; so many on each."""
+    """How references are made: on several wheels in turn, or on a reserved one; number on each."""
 
     name: str
     wheels: int
     each: int
     reserved: bool = False
     told: bool = True
-    """Belt and wheel can be told apart."""
+    """Whether belt and wheel can be separated."""
 
 
 WAYS = (
@@ -54,7 +54,7 @@ def made(way: Way, random: Random, repeats: int = 3) -> list[Reference]:
 
 
 def drifts(way: Way, sets: int) -> Iterator[CounterfaceDrift]:
-    """Yield what is found of so many sets."""
+    """Yield the results of so many sets."""
     for number in range(sets):
         found = counterface_drift(made(way, Random(f"{way.name} {number}")), KnownScatter(60.0, BETWEEN, way.reserved))
         assert found is not None

@@ -1,9 +1,8 @@
 """Runs on the simulated rig whose belt loses 10 % of its grip over 2 km, with wheels that wear three times as fast as
 believed.
 
-Conditions and references are short and at 30 degC; wheels need no running in. They are warmed and soaked in rolling
-contact, by which most of the belt's travel comes about: more than a kilometre. What the belt has lost over the metres
-that an interval is for is known.
+Conditions and references are short and at 30 degC; wheels need no running in. Warming and soaking in rolling contact
+makes up most of the belt's travel: more than a kilometre. The belt's true loss over an interval's metres is known.
 """
 
 from __future__ import annotations
@@ -40,12 +39,12 @@ WAYS = {
     "a reserved wheel": {"replicates": 1, "wheel": ", wheel: ref-1", "loads": "120 N, 160 N, 200 N"},
     "one wheel": {"replicates": 1, "wheel": "", "loads": "120 N, 160 N, 200 N"},
 }
-"""What the recipe says, by name."""
+"""Recipe settings, by name."""
 
 
 @dataclass(frozen=True, slots=True)
 class TwinCase:
-    """One run to be made."""
+    """One run to make."""
 
     way: str
     seed: int
@@ -53,7 +52,7 @@ class TwinCase:
 
 @dataclass(frozen=True, slots=True)
 class TwinFound:
-    """What a run has found, and whether its interval holds what the belt has truly lost over as many metres."""
+    """The result of a run, and whether its interval contains the belt's true loss over as many metres."""
 
     case: TwinCase
     told: bool
@@ -83,6 +82,6 @@ def carry_out(case: TwinCase) -> TwinFound:
 
 
 def holds_truth(drift: CounterfaceDrift) -> bool:
-    """Return whether an interval holds what the belt has lost over the metres that it is for."""
+    """Return whether an interval contains the belt's loss over the interval's metres."""
     _, low, high = drift.changed_percent(drift.over_m)
     return low <= 100.0 * ((1.0 - LOSS) ** (drift.over_m / OVER_M) - 1.0) <= high

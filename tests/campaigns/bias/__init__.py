@@ -1,1 +1,1 @@
-"""Campaign: is a coefficient from both directions of slip free of what a session is off by?"""
+"""Campaign: is a coefficient from both directions of slip free of the session's errors?"""

@@ -1,12 +1,13 @@
 """`python -m tests.campaigns.bias [--sample] [--seeds N] [--jobs N] [--hot]`: is a coefficient biased?
 
-Each compound at 25, 55 and 85 degC and three loads, in both directions of slip, over 100 sessions: 50 seeds, each run
-once more with the errors of its sensors mirrored, so that what they do evenly cancels and what is left is bias. Judged
-against the truth with the realised factors of each repeat. Beside them one condition in one direction, of which the
-budget has to name the session's misalignment as the largest of the instruments' terms where temperature hardly
-matters. Prints a line a figure and exits 1 where one misses.
+Each compound at 25, 55 and 85 degC and three loads, in both directions of slip, over 100 sessions: 50 seeds, each
+repeated with mirrored sensor errors, so that symmetric effects cancel and the rest is bias. The truth includes the
+realised factors of each repeat. One more condition has one direction only; where temperature hardly matters, its budget
+must name the session's misalignment as the largest of the instruments' terms. Prints a line a figure and exits 1 where
+one misses.
 
-``--hot``: the rig that friction warms fast; cells whose temperature cannot be held there have no value, and are told.
+``--hot``: the rig that friction warms fast; cells whose temperature cannot be held there have no value; they are
+printed.
 """
 
 from __future__ import annotations
@@ -24,18 +25,18 @@ from tests.campaigns.bias.runs import COMPOUNDS, LOADS_N, TEMPERATURES_C, Case, 
 
 SESSIONS = 100
 CELL_PERCENT, MEAN_PERCENT = 0.5, 0.3
-"""Most bias of a cell, and in the mean over the cells without their signs."""
+"""Maximum bias of a cell, and maximum mean of the cells' absolute bias."""
 SURE = 2.5
-"""A figure of fewer seeds may miss by so many of its own standard errors."""
+"""Tolerance of a figure from fewer seeds, in its own standard errors."""
 SAMPLE = (("1#", 25), ("3#", 55))
-"""Runs of the sample: one seed and its mirror each."""
+"""Runs of the sample, each with one seed and its mirror."""
 MISALIGNMENT = "axis misalignment"
 COLD_C = 25
 """At this temperature no compound's coefficient changes by more than 0.3 % a kelvin."""
 
 
 def cases(seeds: int, *, hot: bool, only: Sequence[tuple[str, int]] = ()) -> Iterator[Case]:
-    """Yield the runs, seed by seed: whatever comes of an early end is balanced."""
+    """Yield the runs, seed by seed: results stay balanced if the campaign ends early."""
     places = only or [(compound, at_c) for compound in COMPOUNDS for at_c in TEMPERATURES_C]
     for seed in range(seeds):
         for compound, at_c in places:
@@ -58,12 +59,12 @@ def _mean_and_error(found: Sequence[Off]) -> tuple[float, float]:
 
 
 NOISE_PERCENT = 0.25
-"""Standard deviation of a mirrored pair of sessions where one seed alone cannot tell it: fluctuation of friction within
-six repeats of 15 turns, twice, 1 % with a time constant of 0.3 s [A], and curvature over a kelvin of bias."""
+"""Standard deviation of a mirrored pair of sessions, for when one seed alone cannot give it: fluctuation of friction
+within six repeats of 15 turns, twice, 1 % with a time constant of 0.3 s [A], and curvature over a kelvin of bias."""
 
 
 def figures(found: Sequence[Off], cells: int, *, whole: bool) -> Iterator[Figure]:
-    """Yield bias by cell, in the mean, and what one direction is off by."""
+    """Yield bias by cell, mean bias, and the error of one direction."""
     by_cell: dict[Cell, list[Off]] = defaultdict(list)
     for one in found:
         by_cell[one.cell].append(one)
@@ -89,7 +90,7 @@ def figures(found: Sequence[Off], cells: int, *, whole: bool) -> Iterator[Figure
 
 
 def _one_way(by_cell: dict[Cell, list[Off]]) -> Iterator[Figure]:
-    """Yield how far sessions are off, one way and both ways, and what one way names as the largest term."""
+    """Yield the sessions' errors, one way and both ways, and the largest term that the one-way budget names."""
     for cell, each in sorted(by_cell.items()):
         if cell.both:
             continue
@@ -105,7 +106,7 @@ def _one_way(by_cell: dict[Cell, list[Off]]) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.bias", description=__doc__)
     parser.add_argument("--sample", action="store_true", help="two runs and their mirrors")
     parser.add_argument("--seeds", type=int, default=SESSIONS // 2, metavar="N", help="seeds, each run twice")

@@ -1,10 +1,9 @@
-"""Runs on the simulated rig whose coefficients are held against what the rig knows to be true.
+"""Runs on the simulated rig whose coefficients are compared with the rig's own truth.
 
-A compound at a temperature is one run: three loads in both directions of slip, and one load in one direction beside
-them. The wheel wears three times as fast as believed, heat and belt differ by 30 % from what control reckons with, the
-cell's channels have errors of sensitivity of up to 0.5 % [A]. A seed is run twice, the second time with the errors of
-its sensors mirrored. What a repeat differs by from the others is known (``sim.record_truth``) and taken off: what is
-left is the session, and noise.
+A compound at a temperature is one run: three loads in both directions of slip, and one further load in one direction.
+The wheel wears three times as fast as believed, heat and belt differ by 30 % from control's assumptions, and the cell's
+channels have errors of sensitivity of up to 0.5 % [A]. Each seed runs twice, the second time with mirrored sensor
+errors. The known deviation of each repeat (``sim.record_truth``) is subtracted: the session's error and noise remain.
 """
 
 from __future__ import annotations
@@ -29,9 +28,9 @@ from tests.campaigns.budget.twin import WRONG_BELIEFS
 COMPOUNDS, TEMPERATURES_C, LOADS_N = ("1#", "2#", "3#"), (25, 55, 85), (100, 200, 300)
 OVERRIDES: Final = (*WRONG_BELIEFS, "sim.sensors.cell_sensitivity=0.5 %", "sim.running_in=0")
 HOT: Final = ("sim.friction_heat_fraction=0.5", "sim.belt_conductance=0.3 W/K")
-"""The rig that friction warms fast: what cannot be held there has no value."""
+"""The rig that friction warms fast: a condition that cannot be held there has no value."""
 ONE_WAY_MM_S, BOTH_MM_S, ONE_WAY_N = 205, 200, 200
-"""Slip of the condition in one direction, beside that of the others: a condition is measured in one way only."""
+"""Slip of the one-direction condition; it differs from the others' because a condition is measured in one way only."""
 RECIPE = """recipe: bias
 specimens: [{{compound: "{0}"}}]
 measure:
@@ -43,7 +42,7 @@ grids:
 
 
 class Case(NamedTuple):
-    """One run to be made."""
+    """One run to make."""
 
     compound: str
     temperature_c: int
@@ -61,13 +60,13 @@ class Cell(NamedTuple):
     both: bool
 
     def __str__(self) -> str:
-        """Return it in words."""
+        """Return it as text."""
         return f"{self.compound}, {self.temperature_c} degC, {self.load_n} N"
 
 
 @dataclass(frozen=True, slots=True)
 class Off:
-    """By how much, per cent, a coefficient is off its truth; the largest of the instruments' terms by its budget."""
+    """Error of a coefficient, per cent, and the largest of the instruments' terms in its budget."""
 
     cell: Cell
     seed: int
@@ -77,7 +76,7 @@ class Off:
 
 
 def run(case: Case) -> tuple[Case, list[Off]]:
-    """Make one run; return what became of its conditions."""
+    """Make one run; return the results of its conditions."""
     with TemporaryDirectory(prefix="bias-", ignore_cleanup_errors=True) as name:
         folder = Path(name)
         recipe = folder / "recipe.yaml"

@@ -1,1 +1,1 @@
-"""Campaign: does an uncertainty hold what it says, and does a test notice when a term of it is wrong."""
+"""Campaign: does an uncertainty have its stated coverage, and does a test fail when one of its terms is wrong."""

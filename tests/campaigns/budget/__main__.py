@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.budget [--sample | --twin SEEDS]`: does U hold what it says; one line a figure.
+"""`python -m tests.campaigns.budget [--sample | --twin SEEDS]`: is the stated U right; one line a figure.
 
 Coverage of both measurands by Monte Carlo with the distributions that the budget declares; how often two wheels of one
-compound, and compounds 10 % apart, are called different; and whether a test dies with every term of the budget.
-``--twin``: instead, coverage on the simulated rig with wrong beliefs, one condition a seed. Exit
-status 0 when every figure is what is asked for, 1 when one misses it.
+compound, and compounds 10 % apart, are called different; and whether a test fails for every wrong term of the budget.
+``--twin``: instead, coverage on the simulated rig with wrong beliefs, one condition a seed. Exit status 0 when every
+figure is what is asked for, 1 when one misses it.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ from tests.campaigns.budget.twin import Held, held
 DRAWS, SAMPLE_DRAWS = 10_000, 1_000
 PAIRS, SAMPLE_PAIRS = 1_000, 300
 COVERED = (94.0, 99.0)
-"""Share of intervals that hold the value, per cent: 95 is meant, bounded distributions make it a bit more."""
+"""Share of intervals that contain the value, per cent: nominally 95; bounded distributions make it slightly larger."""
 ON_THE_TWIN, TWIN_SEEDS = (89.0, 99.0), 100
-"""The same on the simulated rig: of 100 seeds the count itself scatters by two."""
+"""The same on the simulated rig: with 100 seeds the count itself scatters by two."""
 CALLED_ON_THE_TWIN = (1.0, 11.0)
 """Share of pairs of wheels of one compound, on the simulated rig, that are called different, per cent."""
 SURE = 2.5
-"""A figure of a sample may miss by so many of its own standard deviations."""
+"""Tolerance of a sample's figure, in its own standard deviations."""
 EVERY = 20
 """The sample hunts every twentieth mutant."""
 
 
 def _within(name: str, hits: int, count: int, low: float, high: float, *, exact: bool) -> Figure:
-    """Return a share in per cent with its bounds; of a sample with room for the scatter of a count."""
+    """Return a share in per cent with its bounds; a sample's bounds allow for the scatter of a count."""
     share = 100.0 * hits / count
     room = 0.0 if exact else SURE * 100.0 * sqrt(max(low * (100.0 - low), high * (100.0 - high)) / count) / 100.0
     limit = f"{low:g} to {high:g} %" + (f" +- {room:.1f} for {count}" if room else "")
@@ -45,7 +45,7 @@ def _within(name: str, hits: int, count: int, low: float, high: float, *, exact:
 
 
 def coverage(draws: int) -> Iterator[Figure]:
-    """Yield how many intervals hold this wheel's value, and how many the compound's."""
+    """Yield how many intervals contain this wheel's value, and how many the compound's."""
     for number, cell in enumerate(CELLS):
         random = Random(f"coverage {number}")
         this = compound = whole = 0
@@ -66,7 +66,7 @@ def coverage(draws: int) -> Iterator[Figure]:
 
 
 def _called(cell: Cell, apart: float, wheels: int, pairs: int) -> int:
-    """Return in how many pairs, measured on one rig each, two compounds are called different."""
+    """Return the number of pairs, each measured on one rig, in which two compounds are called different."""
     random = Random(f"pairs {apart} {wheels}")
     called = 0
     for _ in range(pairs):
@@ -90,7 +90,7 @@ def pairs(count: int) -> Iterator[Figure]:
 
 
 def twin(seeds: int, jobs: int) -> Iterator[Figure]:
-    """Yield how many intervals of runs on the simulated rig hold its truth."""
+    """Yield how many intervals of runs on the simulated rig contain its truth."""
     found: list[Held] = []
     for one in held(seeds, jobs):
         found.append(one)
@@ -109,7 +109,7 @@ def twin(seeds: int, jobs: int) -> Iterator[Figure]:
 
 
 def killed(every: int, word: str = "") -> Iterator[Figure]:
-    """Yield which wrong budgets no test notices, of every so many, or of those with a word in their names."""
+    """Yield the wrong budgets that no test detects, among every so many, or among those with a word in their names."""
     hunted = [one for one in mutants() if word in one.name][::every]
     alive: list[str] = []
     for one, lives in survivors(hunted):
@@ -120,7 +120,7 @@ def killed(every: int, word: str = "") -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.budget", description=__doc__)
     parser.add_argument("--sample", action="store_true", help="the short form, for every change")
     parser.add_argument("--twin", type=int, metavar="SEEDS", help="coverage on the simulated rig; 100: half an hour")

@@ -1,8 +1,8 @@
-"""Coefficients measured by a made-up chain whose errors have the distributions that the budget declares.
+"""Coefficients measured by a synthetic chain whose errors have the distributions that the budget declares.
 
-The way forward is written here once more, from forces: load and friction are turned by the misalignment, each channel
-sees a share of the other, and has its linearity and its zero; speeds, diameter and temperature are off, and the rubber
-answers to what they truly are. So the budget's sensitivities are tried, and not only its sums.
+The forward model is written here independently, from forces: the misalignment turns load and friction, each channel has
+crosstalk, linearity and zero errors; speeds, diameter and temperature have errors, and the rubber responds to their
+true values. This tests the budget's sensitivities as well as its sums.
 """
 
 from __future__ import annotations
@@ -22,15 +22,15 @@ from tester.kinds.wheel_on_belt.budget import TERMS
 from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 
 BETWEEN, REPEATS, OTHERS = 0.03, 0.02, 5
-"""Relative standard deviations from wheel to wheel and from repeat to repeat; conditions of a run that share the
-latter."""
+"""Relative standard deviations from wheel to wheel and from repeat to repeat; conditions of a run with a common repeat
+scatter."""
 WHEEL_M_S, DIAMETER_MM, LOSS_MM, OFFSET_K = 0.8, 90.0, 0.1, 0.4
 DRIFT = Judgement(drift_percent=0.3, drift_error_percent=0.2, repeat_windows=1.5)
 
 
 @dataclass(frozen=True, slots=True)
 class Cell:
-    """A condition: its coefficient, load N, sliding m/s, sensitivity and what that is uncertain by, 1/K; repeats."""
+    """A condition: its coefficient, load N, sliding m/s, sensitivity and its uncertainty, 1/K; repeats."""
 
     name: str
     mu: float
@@ -53,7 +53,7 @@ CELLS: Final = (
 
 @dataclass(frozen=True, slots=True)
 class Chain:
-    """What a rig is off by, all the time: forces N, shares, angle, kelvin."""
+    """Constant errors of a rig: forces N, shares, angle, kelvin."""
 
     friction_n: float
     normal_n: float
@@ -86,7 +86,7 @@ def rig(random: Random) -> Chain:
 def measured(cell: Cell, mu: float, chain: Chain, random: Random, slope_off: float) -> ConditionResult:
     """Measure a wheel whose coefficient at the nominal condition is ``mu``; return its result with budgets.
 
-    ``slope_off``: by how many standard uncertainties the believed sensitivity to temperature is off.
+    ``slope_off``: error of the believed temperature sensitivity, in standard uncertainties.
     """
     belt = WHEEL_M_S - cell.sliding_m_s
     diameter = random.uniform(-0.15, 0.15) + LOSS_MM * random.gauss(0.0, 1.0)
@@ -115,7 +115,7 @@ def measured(cell: Cell, mu: float, chain: Chain, random: Random, slope_off: flo
 
 
 def replicates(cell: Cell, mu: float, chain: Chain, random: Random, slope_off: float, count: int) -> ConditionResult:
-    """Measure a compound on so many wheels, one after the other on a rig; return what stands for it."""
+    """Measure a compound on so many wheels, one after the other on a rig; return the compound's result."""
     each = [measured(cell, mu * (1.0 + random.gauss(0.0, BETWEEN)), chain, random, slope_off) for _ in range(count)]
     if count == 1:
         return each[0]

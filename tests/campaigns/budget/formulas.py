@@ -1,4 +1,5 @@
-"""Mutants of what is no term of a machine: repeats, drift, temperature, diameter, counterface, sums, differences."""
+"""Mutants of code other than a machine's terms: repeats, drift, temperature, diameter, counterface, sums,
+differences."""
 
 from __future__ import annotations
 
@@ -61,7 +62,7 @@ _OF_WORN_PIECES: Final = (
 
 
 def of_formulas() -> Iterator[Mutant]:
-    """Yield what is scaled wrongly."""
+    """Yield mutants with a wrong scale."""
     yield from scaled(_MEASURAND, _TESTS, _OF_MEASURAND)
     yield from scaled(_KELVIN, _TESTS, _OF_KELVIN)
     yield from scaled(_KELVIN, _TESTS, [("correction of temperature", "exp(-self.slope.per_kelvin",
@@ -76,7 +77,7 @@ def of_formulas() -> Iterator[Mutant]:
 
 
 def of_structure() -> Iterator[Mutant]:
-    """Yield what is put together wrongly."""
+    """Yield mutants with a wrong combination."""
     for name, path, old, new, tests in (
         ("common errors stay in a difference", _DIFFERENCE, "abs(first_term.error - second_term.error)",
          "abs(first_term.error) + abs(second_term.error)", _TESTS),

@@ -1,7 +1,7 @@
-"""One deliberate mistake in the code, and whether a test notices it.
+"""One deliberate mistake in the code, and whether a test detects it.
 
-Each mutant is put into a copy of the source tree, never into the tree itself, and the tests that are to notice it run
-there. The unchanged copy has to pass them.
+Each mutant goes into a copy of the source tree, never into the tree itself, and the tests that should detect it run
+there. The unchanged copy must pass them.
 """
 
 from __future__ import annotations
@@ -18,13 +18,13 @@ from tempfile import TemporaryDirectory
 ROOT = Path(__file__).resolve().parents[3]
 COPIED = ("tester", "drivers", "sim", "recipes", "tests", "pyproject.toml")
 SIZES = (("removed", "0.0"), ("halved", "0.5"), ("doubled", "2.0"))
-"""What becomes of a factor; where a sign matters, ``SIGNED``."""
+"""Replacements of a factor; ``SIGNED`` if the sign matters."""
 SIGNED = (*SIZES, ("with the other sign", "-1.0"))
 
 
 @dataclass(frozen=True, slots=True)
 class Mutant:
-    """A text in a file, replaced by another; ``tests``: the files that are to notice it."""
+    """A text in a file, replaced by another; ``tests``: the files that should detect it."""
 
     name: str
     path: str
@@ -48,7 +48,7 @@ def tests_of(*names: str) -> tuple[str, ...]:
 
 
 def survivors(hunted: Sequence[Mutant]) -> Iterator[tuple[Mutant, bool]]:
-    """Yield each mutant with whether it lives; raises RuntimeError where the unchanged copy does not pass."""
+    """Yield each mutant and whether it survives; raises RuntimeError if the unchanged copy does not pass."""
     with TemporaryDirectory() as name:
         copy = Path(name)
         for part in COPIED:
@@ -57,7 +57,7 @@ def survivors(hunted: Sequence[Mutant]) -> Iterator[tuple[Mutant, bool]]:
                 shutil.copytree(source, copy / part, ignore=shutil.ignore_patterns("__pycache__"))
             else:
                 shutil.copy(source, copy / part)
-        # Compiled once, by the hash of each source: a mutant is read anew even where size and second stay the same.
+        # Compiled once, by the hash of each source: a mutant is read again even if size and second stay the same.
         compiled = [sys.executable, "-m", "compileall", "-q", "--invalidation-mode", "checked-hash"]
         subprocess.run([*compiled, *COPIED[:4]], cwd=copy, check=True)
         every = tuple(dict.fromkeys(file for one in hunted for file in one.tests))
@@ -81,8 +81,8 @@ def _lives(mutant: Mutant, copy: Path) -> bool:
 
 def _passes(copy: Path, tests: Sequence[str]) -> bool:
     command = [sys.executable, "-B", "-m", "pytest", "-o", "addopts=", "-q", "-x", "-p", "no:cacheprovider", *tests]
-    plain = {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # no plugin's import is waited for
+    plain = {"PYTHONPATH": str(copy), "PYTEST_DISABLE_PLUGIN_AUTOLOAD": "1"}  # do not wait for plugins' imports
     done = subprocess.run(command, cwd=copy, capture_output=True, check=False, env=os.environ | plain)
-    if done.returncode not in (0, 1, 2):  # 2: a mutant that no module can be read with any more
+    if done.returncode not in (0, 1, 2):  # 2: the mutant breaks the import of modules
         raise RuntimeError(f"pytest ended with {done.returncode}: {done.stdout.decode()[-500:]}")
     return done.returncode == 0

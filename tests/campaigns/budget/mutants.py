@@ -1,4 +1,4 @@
-"""All deliberate mistakes in budgets, and in what is worked out from them."""
+"""All deliberate mistakes in budgets, and in results derived from them."""
 
 from __future__ import annotations
 

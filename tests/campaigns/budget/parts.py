@@ -1,4 +1,4 @@
-"""Mutants of what is worked out from conditions and their budgets: components, fits, master curves."""
+"""Mutants of results derived from conditions and their budgets: components, fits, master curves."""
 
 from __future__ import annotations
 
@@ -78,7 +78,8 @@ _OF_RUNS: Final = (
 
 
 def of_components() -> Iterator[Mutant]:
-    """Yield mutants of adhesion and hysteresis by a film: weights, derivatives, what is common, and which pairs."""
+    """Yield mutants of adhesion and hysteresis by a film: weights, derivatives, common errors, and the choice of
+    pairs."""
     rows = [(f"components: {name}", old, new) for name, old, new in _SCALED]
     yield from scaled(_COMPONENTS, _OF_COMPONENTS, rows)
     for path, tests, others in ((_COMPONENTS, _OF_COMPONENTS, _OTHERS), (_PAIRS, _OF_PAIRS, _OF_RUNS)):
@@ -172,7 +173,7 @@ _MASTER_OTHERS: Final = (
 
 
 def of_fits() -> Iterator[Mutant]:
-    """Yield mutants of fits: weights, denominators, tests and intervals, and what a run's conditions bring."""
+    """Yield mutants of fits: weights, denominators, tests and intervals, and the input from a run's conditions."""
     for path, name, old, new in _FIT_SCALED:
         yield from scaled(path, _OF_FIT, [(f"fit: {name}", old, new)])
     for path, name, old, new in _FIT_OTHERS:
@@ -180,7 +181,7 @@ def of_fits() -> Iterator[Mutant]:
 
 
 def of_masters() -> Iterator[Mutant]:
-    """Yield mutants of master curves: what an interval holds, and what a verdict compares."""
+    """Yield mutants of master curves: the extent of an interval, and what a verdict compares."""
     tests = {_COLLAPSE: _OF_COLLAPSE, _VERDICT: _OF_VERDICT}
     for path, name, old, new in _MASTER_SCALED:
         yield from scaled(path, tests[path], [(f"master: {name}", old, new)])

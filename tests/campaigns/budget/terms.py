@@ -1,4 +1,4 @@
-"""Mutants of every term that a machine's measuring chain brings, of both kinds, and of the way each acts."""
+"""Mutants of every term of both machines' measuring chains, and of the way each acts."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ KINDS: Final = (
     ("wheel", "tester/kinds/wheel_on_belt/budget.py", WHEEL, _WHEEL_TESTS),
     ("track", "tester/kinds/specimen_on_track/budget.py", TRACK, _TRACK_TESTS),
 )
-"""Each kind's name, the file of its terms, the terms, and who is to notice."""
+"""Each kind's name, the file of its terms, the terms, and the tests that should detect a mutant."""
 OTHER_WAY: Final = {
     "FRICTION": "NORMAL", "NORMAL": "FRICTION", "ROTATION": "COEFFICIENT", "CROSSTALK": "COEFFICIENT",
     "TEMPERATURE": "COEFFICIENT", "LAG": "TEMPERATURE", "SLIDING": "COEFFICIENT", "SIZE": "SLIDING", "LOSS": "SIZE",
@@ -69,7 +69,7 @@ def of_terms() -> Iterator[Mutant]:
 def of_formulas() -> Iterator[Mutant]:
     """Yield each way in which an error reaches the coefficient, by a wrong factor or sign, and each distribution."""
     path, tests = "tester/analysis/terms.py", (*_WHEEL_TESTS, *_TRACK_TESTS)
-    # The sign of a sensitivity is a convention; where it may be of either sign, it has to stay.
+    # The sign of a sensitivity is a convention; a sensitivity of either sign must keep its sign.
     of_either = {"temperature", "lag"}
     yield from scaled(path, tests, [one for one in _FORMULAS if one[0] in of_either], SIGNED)
     yield from scaled(path, tests, [one for one in _FORMULAS if one[0] not in of_either])

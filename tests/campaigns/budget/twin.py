@@ -1,12 +1,12 @@
-"""Do the intervals of runs on the simulated rig hold what the rig knows to be true, with beliefs that are wrong?
+"""Do the intervals of runs on the simulated rig contain the rig's truth, with wrong beliefs?
 
-One condition a seed, on two wheels: the session is shared by all of a run, so that seeds are counted, not rows. Wheels
-wear three times as fast as believed, heat and belt differ by 30 % from what control reckons with, and a session
-draws the imperfections of its sensors. True of this wheel is model x condition x wheel, of the compound in this
-condition model x condition, as the rig itself tells (``sim.record_truth``), without what one repeat differs by.
+One condition a seed, on two wheels: all rows of a run share the session, so seeds are counted, not rows. Wheels wear
+three times as fast as believed, heat and belt differ by 30 % from control's assumptions, and a session draws the
+imperfections of its sensors. The truth of this wheel is model x condition x wheel; that of the compound in this
+condition is model x condition, as the rig itself records (``sim.record_truth``), without the scatter of repeats.
 
-How often are the two wheels of a run called different, which are of one compound? Runs of two seeds cannot be held
-against each other so: by how much the model misses a compound in a condition is drawn by the seed, too.
+How often are the two wheels of a run, of one compound, called different? Runs of two seeds cannot be compared this way:
+the seed also draws the model's error for a compound in a condition.
 """
 
 from __future__ import annotations
@@ -52,7 +52,7 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class Held:
-    """What became of one seed: per cent by which the first wheel's value is off its truth, and whether U holds each."""
+    """The result of one seed: error of the first wheel's value in per cent, and whether each U contains the truth."""
 
     seed: int
     condition: tuple[str, int, int, int, str]
@@ -61,13 +61,13 @@ class Held:
     this: bool
     compound: bool
     both: bool
-    """The compound is held by U of the mean of both wheels."""
+    """Whether U of the mean of both wheels contains the compound's truth."""
     wheels_differ: bool
-    """The two wheels are called different."""
+    """Whether the two wheels are called different."""
 
 
 def held(seeds: int, jobs: int = 1) -> Iterator[Held]:
-    """Yield what became of each seed that has values."""
+    """Yield the result of each seed that has values."""
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         yield from (one for one in pool.map(_of_seed, range(seeds)) if one is not None)
 

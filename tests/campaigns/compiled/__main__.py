@@ -1,9 +1,9 @@
 """`python -m tests.campaigns.compiled [--sample | --full]`: is the compiled scan its source, bit by bit?
 
-Every case is run twice: by the `tester` that is installed, which has to be the compiled one, and by this checkout's
-source. Exit code, tables, every event with its time and every stored sample have to be the same. `--sample`: recipes,
-some faults, a laboratory's own kind of rig; `--full`: pin-on-disc and every fault of the catalogue too. Prints a line a
-figure; exit code 1 where one misses, 2 where there is no compiled installation to compare with.
+Every case runs twice: with the installed `tester`, which must be the compiled one, and with this checkout's source.
+Exit code, tables, every event with its time and every stored sample must be equal. `--sample`: recipes, some faults, a
+laboratory's own kind of rig; `--full`: pin-on-disc and every fault of the catalogue too. Prints a line a figure; exit
+code 1 where one misses, 2 without a compiled installation to compare with.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from tests.tester.kinds.wheel_on_belt.bench import AT_ONCE, QUIET, SHORT
 CHECKOUT = Path(__file__).parents[3]
 WORKER = Path(__file__).with_name("worker.py")
 SAMPLE_EVERY = 12
-"""Of the catalogue's faults, one in so many belongs to the sample."""
+"""The sample has one in so many of the catalogue's faults."""
 OWN_KIND = EXAMPLES / "kind"
 """A package with a kind of rig of a laboratory's own: its classes stay Python and inherit from compiled ones."""
 FAULT_AT_S = 40.0
@@ -37,7 +37,7 @@ FAULT_AT_S = 40.0
 
 
 def cases(full: bool) -> list[Case]:
-    """Return what is run on both sides."""
+    """Return the cases to run on both sides."""
     quickstart = find("quickstart").read_text(encoding="utf-8")
     recipes = {"short": AT_ONCE, "quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED}
     found = [_case(f"{name}, seed {seed}", text, seed) for name, text in recipes.items() for seed in (0, 1)]
@@ -71,7 +71,7 @@ def side(file: Path, source: bool) -> subprocess.Popen[str]:
     """Start a worker on the installed `tester`, or on this checkout's."""
     own = [str(file.with_name("site")), str(OWN_KIND)]
     environment = os.environ | {"PYTHONPATH": os.pathsep.join([*own, str(CHECKOUT)] if source else own)}
-    # -P: the worker's own folder is not searched; outside the checkout nothing else is but what is installed.
+    # -P: do not search the worker's own folder; outside the checkout only the installed packages are found.
     command = [sys.executable, "-P", str(WORKER), str(file)]
     return subprocess.Popen(command, stdout=subprocess.PIPE, text=True, cwd=file.parent, env=environment)
 
@@ -104,7 +104,7 @@ def main(arguments: list[str] | None = None) -> int:
 def report(
     todo: list[Case], installed: Iterator[dict[str, object]], source: Iterator[dict[str, object]]
 ) -> int:
-    """Print what the two sides have in common; return the exit code."""
+    """Print the comparison of both sides; return the exit code."""
     one, other = next(installed), next(source)
     if not one["compiled"] or other["compiled"]:
         print(f"nothing to compare: installed {one}, checkout {other}", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""How the package is built: plain unless FRICTION_TESTER_COMPILE=1 asks for a compiled scan, which fails loudly."""
+"""How the package is built: plain unless FRICTION_TESTER_COMPILE=1 requests a compiled scan, which fails loudly."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ def test_an_editable_installation_is_never_compiled(monkeypatch: pytest.MonkeyPa
 
 
 def compiler(sources: list[str], *args: object, **options: object) -> list[str]:
-    """Stand for a compiler's ``compile``."""
+    """Replace a compiler's ``compile``."""
     return [f"{Path(source).stem}.o" for source in sources]
 
 

@@ -1,4 +1,5 @@
-"""A class that stays Python inherits from a compiled one only where that is allowed: the source would never show it."""
+"""A Python class inherits from a compiled one only where that is allowed: the plain source would never show an
+error."""
 
 from __future__ import annotations
 
@@ -10,7 +11,7 @@ from compiling.modules import HOT
 
 ROOT = Path(__file__).parents[3]
 STAYS_PYTHON = {"Protocol", "Enum", "IntEnum", "IntFlag", "Flag", "NamedTuple", "TypedDict", "Exception"}
-"""Bases that keep a class of a compiled module a Python class, which may be inherited from."""
+"""Bases that keep a class of a compiled module a Python class, so that others may inherit from it."""
 ALLOWED = "mypyc_attr(allow_interpreted_subclasses=True)"
 """The mark of the bases of kinds of rigs of a laboratory's own."""
 
@@ -56,7 +57,7 @@ def classes() -> dict[str, Found]:
 
 
 def from_compiled() -> list[tuple[str, str, dict[str, Found]]]:
-    """Return each class that stays Python with its base that does not."""
+    """Return each Python class with a compiled base."""
     known, hot = classes(), compiled()
     motions = "tester.machine.motions"
     assert motions in hot and f"{motions}.Move" in known

@@ -2,7 +2,7 @@
 
     python -P worker.py CASES.json
 
-A case is {"name", "rig", "recipe", "seed", "overrides", "faults", "jobs"}. The first line says where `tester` is and
+A case is {"name", "rig", "recipe", "seed", "overrides", "faults", "jobs"}. The first line states where `tester` is and
 whether its scan is compiled.
 """
 
@@ -46,7 +46,7 @@ class Silent(ReportScreen):
         self.messages: list[str] = []
 
     def message(self, text: str) -> None:
-        """Keep the message."""
+        """Store the message."""
         self.messages.append(text)
 
 
@@ -56,7 +56,7 @@ def digest(data: str) -> str:
 
 
 def digests(case: Case) -> dict[str, str]:
-    """Run a case and return the digests of all that it left: exit code, tables, journal, every sample."""
+    """Run a case and return the digests of its results: exit code, tables, journal, every sample."""
     with TemporaryDirectory(prefix="compiled-", ignore_cleanup_errors=True) as folder:
         recipe = Path(folder) / "recipe.yaml"
         recipe.write_text(case["recipe"], encoding="utf-8")

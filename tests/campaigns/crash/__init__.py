@@ -1,1 +1,1 @@
-"""Crashes: killed processes and power cuts, and what is left of a run after them."""
+"""Crashes: killed processes and power cuts, and the state of a run after them."""

@@ -1,4 +1,4 @@
-"""What a disk may hold after a power cut: what was synced, and of the rest any part."""
+"""Possible contents of a disk after a power cut: everything synced, and any part of the rest."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ SECTOR = 512
 
 @dataclass(slots=True)
 class _File:
-    """A file: what is certainly on the disk (None: no file), and what came after."""
+    """A file: its content certainly on the disk (None: no file), and later operations."""
 
     synced: bytearray | None = None
     unsynced: list[Operation] = field(default_factory=list[Operation])
 
     def settle(self) -> None:
-        """Take everything as on the disk."""
+        """Mark everything as on the disk."""
         for operation in self.unsynced:
             self.synced = applied(self.synced, operation)
         self.unsynced.clear()
@@ -41,13 +41,13 @@ def applied(content: bytearray | None, operation: Operation) -> bytearray | None
 
 
 class Disk:
-    """Plays operations and gives the images that a power cut between them may leave."""
+    """Replays operations and returns the images that a power cut between them may leave."""
 
     def __init__(self) -> None:
         self.files: dict[str, _File] = {}
 
     def play(self, operation: Operation) -> None:
-        """Take one operation."""
+        """Apply one operation."""
         if operation.kind == "mark":
             return
         file = self.files.setdefault(operation.file, _File())
@@ -59,7 +59,7 @@ class Disk:
                 file.settle()  # the folder was synced with it
 
     def image(self, random: Random) -> dict[str, bytes]:
-        """Return the files after a cut now: of what is not synced all, nothing, or any sectors, the last one torn."""
+        """Return the files after a cut now: of unsynced data all, nothing, or any sectors, the last one torn."""
         how = random.choice(("nothing", "all", "sectors", "sectors", "prefix", "prefix"))
         found: dict[str, bytes] = {}
         for name, file in self.files.items():

@@ -56,20 +56,20 @@ REPEATS = 3
 SEED = 5
 OVERRIDES = ("sim.running_in=0", "sim.noise=0", "sim.friction_heat_fraction=0", "sim.variability.within=0")
 """A wheel that is run in, sensors without noise, no heat, so that every repeat is short; the scatter from repeat to
-repeat stays as it is."""
+repeat is unchanged."""
 RUN_SD = 0.02
 """The simulator's stated sigma from repeat to repeat (sim.physics.parameters), relative."""
 SIGMAS = 4.5
-"""A mean that differs by more is not the repeatability's doing: once in 150,000."""
+"""Repeatability alone makes a mean differ by more only once in 150,000."""
 LATEST_S = 1.0
-"""Samples older than that, of wall time, must be there."""
+"""Samples older than this (wall time) must be stored."""
 
 Place = tuple[int, int]
 
 
 @dataclass(frozen=True, slots=True)
 class Scenario:
-    """What is run: a recipe, and how many conditions it has. Two specimens begin in records of their own."""
+    """A recipe and its number of conditions. Two specimens begin in records of their own."""
 
     name: str
     recipe: str
@@ -108,7 +108,7 @@ SCENARIOS = {"wheel_on_belt": WHEEL, "specimen_on_track": TRACK}
 
 
 class TellingWriter(RunWriter):
-    """The store's writer; tells over a pipe what is committed, and how far the samples are that it was given."""
+    """The store's writer; reports over a pipe what is committed, and the time of the samples it has received."""
 
     pipe: Connection
 
@@ -162,12 +162,12 @@ def work(pipe: Connection, scenario: Scenario, recipe: str, out: str, folder: st
 
 @dataclass(slots=True)
 class Found:
-    """What all campaigns of kills gave."""
+    """The results of all campaigns of kills."""
 
     kills: int = 0
     ended: int = 0
     early: int = 0
-    """Kills before anything of the run was on the disk; the run is begun anew."""
+    """Kills before anything of the run was on the disk; the run starts again."""
     lost_repeats: int = 0
     unreadable: list[str] = field(default_factory=list[str])
     wrong_values: int = 0
@@ -180,19 +180,19 @@ class Found:
 
 @dataclass(slots=True)
 class Told:
-    """What a process said before it was killed."""
+    """What a process reported before it was killed."""
 
     repeats: dict[Place, tuple[float, int]] = field(default_factory=dict[Place, tuple[float, int]])
     samples: list[tuple[str, float, float]] = field(default_factory=list[tuple[str, float, float]])
-    """The record a sample is for, its rig time, and the wall time at which it was given to the recorder."""
+    """A sample's record, its rig time, and the wall time at which the recorder received it."""
     exit: int | None = None
 
 
 def one_process(
     scenario: Scenario, recipe: Path, out: Path, folder: Path | None, kill_after_s: float | None
 ) -> tuple[Told, float]:
-    """Start a process, kill it after a time (None: never); return what it said and when it was killed."""
-    # A forked child has everything imported: it is killed while it measures, not while it starts.
+    """Start a process, kill it after a time (None: never); return its reports and when it was killed."""
+    # A forked child has everything imported: the kill hits its measuring, not its start.
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
     context = multiprocessing.get_context(method)
     here, there = context.Pipe(duplex=False)
@@ -206,13 +206,13 @@ def one_process(
         assert process.pid is not None
         os.kill(process.pid, signal.SIGKILL)
     at = clock.monotonic()
-    _listen(here, told, None)  # what was said before
+    _listen(here, told, None)  # earlier reports
     process.join()
     return told, at
 
 
 def _listen(pipe: Connection, told: Told, deadline: float | None) -> bool:
-    """Take what is said until the deadline (True), or until nothing can come any more (False)."""
+    """Receive reports until the deadline (True), or until the pipe is closed (False)."""
     while True:
         wait = None if deadline is None else deadline - clock.monotonic()
         if wait is not None and wait <= 0.0:
@@ -233,7 +233,7 @@ def _listen(pipe: Connection, told: Told, deadline: float | None) -> bool:
 
 
 class Campaign:
-    """One run of the recipe, killed again and again until it ends; what is committed is remembered here."""
+    """One run of the recipe, killed repeatedly until it ends; remembers what is committed."""
 
     def __init__(self, scenario: Scenario, recipe: Path, out: Path, found: Found, random: Random) -> None:
         self.scenario, self.recipe, self.out, self.found, self.random = scenario, recipe, out, found, random
@@ -281,7 +281,7 @@ class Campaign:
             found.unreadable.append(str(error))
 
     def _samples(self, told: Told, killed_at: float) -> None:
-        """Look how old the oldest sample is that is missing, of those given to the record that was written last."""
+        """Determine the age of the oldest missing sample of the record written last."""
         if not told.samples:
             return
         path = Path(told.samples[-1][0])
@@ -292,19 +292,20 @@ class Campaign:
             self.found.missing_s = max(self.found.missing_s, killed_at - due[0])
 
     def _right_points(self, stored: set[Place]) -> tuple[Place | None, ...]:
-        """Return where a run with these repeats may go on: at the first one missing; None = its condition not begun."""
+        """Return where a run with these repeats may continue: at the first missing one; None = its condition not
+        begun."""
         order = [(c, r) for c in range(1, self.scenario.conditions + 1) for r in range(1, REPEATS + 1)]
         missing = next((place for place in order if place not in stored), None)
         if missing is None:
             return None, (self.scenario.conditions, REPEATS + 1)
         if missing[1] == 1:
-            # Not begun, begun, or the condition before is measured and its end not yet committed.
+            # Not begun, begun, or the previous condition is measured and its end not yet committed.
             return None, missing, (missing[0] - 1, REPEATS + 1)
         return (missing,)
 
 
 def _begun(out: Path) -> Path | None:
-    """Return the folder of the run, None where it was killed before the store knew of it."""
+    """Return the folder of the run; None if it was killed before the store knew it."""
     for path in out.glob("*/run.db"):
         with closing(sqlite3.connect(path)) as connection:
             tables = connection.execute("SELECT count(*) FROM sqlite_master WHERE name = 'run'").fetchone()[0]
@@ -315,7 +316,7 @@ def _begun(out: Path) -> Path | None:
 
 @dataclass(frozen=True, slots=True)
 class Table:
-    """What a run exports: setpoints with counts in order, and the mean coefficient of each condition."""
+    """A run's export: setpoints with counts in order, and the mean coefficient of each condition."""
 
     rows: tuple[tuple[object, ...], ...]
     means: tuple[float, ...]
@@ -343,7 +344,7 @@ def _undisturbed(scenario: Scenario, recipe: Path, out: Path) -> tuple[Table, fl
 
 
 def compare(found: Found, undisturbed: Table, interrupted: Table) -> None:
-    """Hold an interrupted run against the undisturbed one."""
+    """Compare an interrupted run with the undisturbed one."""
     if undisturbed.rows != interrupted.rows:
         found.different.append(f"{interrupted.rows} instead of {undisturbed.rows}")
         return
@@ -367,7 +368,7 @@ def measure(folder: Path, kills: int, seed: int = 1, kind: str = "wheel_on_belt"
                 undisturbed[scenario.name] = _undisturbed(scenario, recipe, folder / scenario.name)
             table, whole_s = undisturbed[scenario.name]
             campaign = Campaign(scenario, recipe, folder / f"run-{number}", found, random)
-            # Five interruptions each, more or fewer as it comes: a run may end before it is killed.
+            # About five interruptions each: a run may end before it is killed.
             ended = campaign.run((0.02 * whole_s, 0.6 * whole_s), min(5, kills - found.kills))
             if ended is not None:
                 found.ended += 1

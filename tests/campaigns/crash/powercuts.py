@@ -27,12 +27,12 @@ REPEATS = 3
 SCANS = 230
 """Of a repeat: it ends between two commits of the second."""
 STRETCHES = 3
-"""The run is recorded in that many goes, each ending in the middle of a repeat but the last."""
+"""The run is recorded in this many stretches; each but the last ends in the middle of a repeat."""
 
 
 @dataclass(slots=True)
 class Recorded:
-    """What was recorded: every sample by its time, every repeat, and the operations with marks between them."""
+    """A recorded run: every sample by its time, every repeat, and the operations with marks between them."""
 
     log: SyncLog
     samples: dict[float, tuple[float, ...]] = field(default_factory=dict[float, tuple[float, ...]])
@@ -40,7 +40,7 @@ class Recorded:
 
 
 def record(folder: Path, random: Random) -> Recorded:
-    """Record a run of two conditions in three stretches; time is counted, not measured."""
+    """Record a run of two conditions in three stretches; time comes from a counter, not a clock."""
     with recording(folder) as log:
         made = Recorded(log)
         clock = Clock()
@@ -99,7 +99,7 @@ def _scans(writer: RunWriter, clock: Clock, made: Recorded, key: int, random: Ra
 
 @dataclass(slots=True)
 class Damage:
-    """What power cuts did."""
+    """The damage of power cuts."""
 
     images: int = 0
     unreadable: list[str] = field(default_factory=list[str])
@@ -112,14 +112,14 @@ class Damage:
 
 @dataclass(slots=True)
 class Known:
-    """What must be on the disk by a moment."""
+    """What must be on the disk at a moment."""
 
     repeats: set[tuple[int, int]] = field(default_factory=set[tuple[int, int]])
     begun: bool = False
     now_s: float = 0.0
 
     def take(self, operation: Operation) -> None:
-        """Take a mark."""
+        """Process a mark."""
         match operation.mark:
             case ("repeat", place, _):
                 self.repeats.add(place)
@@ -132,7 +132,7 @@ class Known:
 
 
 def cuts(made: Recorded, folder: Path, count: int, random: Random) -> Damage:
-    """Cut the power ``count`` times at random operations and read what is left."""
+    """Cut the power ``count`` times at random operations and read the remaining data."""
     operations = made.log.operations
     places = sorted(random.randrange(1, len(operations) + 1) for _ in range(count))
     disk, known, damage = Disk(), Known(), Damage()
@@ -171,7 +171,7 @@ def _read(image: Path, made: Recorded, known: Known, damage: Damage) -> None:
 
 
 def _wrong_point(reader: RunReader, found: set[tuple[int, int]]) -> bool:
-    """Tell whether the run would go on anywhere but at the first repeat that is not there."""
+    """Return whether the run would continue anywhere but at the first missing repeat."""
     point = resume_point(reader)
     order = [(c.condition, r) for c in CONDITIONS for r in range(1, REPEATS + 1)]
     expected = next((place for place in order if place not in found), None)
@@ -190,12 +190,12 @@ def _wrong_point(reader: RunReader, found: set[tuple[int, int]]) -> bool:
 
 
 def _samples(reader: RunReader, made: Recorded, damage: Damage) -> float:
-    """Hold every stored sample against the one recorded; return the newest one's time."""
+    """Compare every stored sample with the recorded one; return the newest one's time."""
     newest, seen = -inf, 0.0
     for block in reader.sample_blocks():
         for row in zip(*(block.columns[name] for name in QUANTITIES.names), strict=True):
             damage.wrong_values += made.samples.get(row[0]) != row
-            damage.wrong_values += row[0] <= seen  # in order, none twice
+            damage.wrong_values += row[0] <= seen  # in order, without duplicates
             seen = row[0]
         newest = seen
     return newest if newest > 0.0 else 100.0

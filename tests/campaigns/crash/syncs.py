@@ -1,8 +1,8 @@
-"""Every write, truncation, sync and deletion that SQLite does, in order: what a power cut is made of.
+"""Every write, truncation, sync and deletion by SQLite, in order: the basis of simulated power cuts.
 
-A thin layer around SQLite's own file layer (its "VFS"), put in with ctypes: the four calls that change a file are
-noted, then made. Works where Python's sqlite3 is linked against a shared SQLite, as in Linux distributions; elsewhere
-``unavailable`` says why.
+A thin layer around SQLite's own file layer (its "VFS"), put in with ctypes: it records the four calls that change a
+file, then makes them. Works where Python's sqlite3 is linked against a shared SQLite, as in Linux distributions;
+elsewhere ``unavailable`` gives the reason.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ _SYNC = ctypes.CFUNCTYPE(ctypes.c_int, _POINTER, ctypes.c_int)
 
 
 class _Vfs(ctypes.Structure):
-    """``sqlite3_vfs`` up to what is replaced, and room for the rest of version 3."""
+    """``sqlite3_vfs`` up to the replaced fields, and room for the rest of version 3."""
 
     _fields_ = [
         ("version", ctypes.c_int),
@@ -72,7 +72,7 @@ class SyncLog:
         self.operations: list[Operation] = []
 
     def mark(self, *what: Any) -> None:
-        """Note that something has happened by now."""
+        """Record a mark here."""
         self.operations.append(Operation("mark", "", mark=what))
 
 
@@ -163,7 +163,7 @@ _layer: list[_Layer] = []
 
 
 def unavailable(folder: Path) -> str:
-    """Return why file operations cannot be noted here; empty where they can. ``folder``: an empty one to try in."""
+    """Return why file operations cannot be recorded here; empty if they can. ``folder``: an empty one to try in."""
     try:
         with recording(folder) as log:
             connection = sqlite3.connect(folder / "try.db")
@@ -176,7 +176,7 @@ def unavailable(folder: Path) -> str:
 
 @contextmanager
 def recording(folder: Path) -> Iterator[SyncLog]:
-    """Note what SQLite does to the files in a folder that are opened inside the block."""
+    """Record SQLite's operations on files in a folder that are opened inside the block."""
     if not _layer:
         _layer.append(_Layer())
     layer, log = _layer[0], SyncLog()
