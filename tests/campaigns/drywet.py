@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.drywet [--sample] [--seeds N]`: is the share of hysteresis found that was put in?
+"""`python -m tests.campaigns.drywet [--sample] [--seeds N]`: is the true share of hysteresis found?
 
 The recipe `pin-on-disc` on its simulated rig, over seeds, with all noise and scatter. Wet, the twin keeps a share of
-the dry friction (`sim.contact.wet`): as shipped in every other seed, others between. `tester components` has to find
-it, dry less wet, within the interval that it states, for both compounds, in 16 of 20 seeds; and the interval has to be
-narrow. The recipe `greta`, whose law knows its parts, is judged by tests.campaigns.greta.
+the dry friction (`sim.contact.wet`): as shipped in every other seed, others between. `tester components` must find it,
+dry less wet, within its stated interval, for both compounds, in 16 of 20 seeds; and the interval must be narrow.
+tests.campaigns.greta judges the recipe `greta`, whose law separates its parts.
 """
 
 from __future__ import annotations
@@ -28,16 +28,16 @@ from tester.store.run_reader import RunReader
 
 SEEDS, SAMPLE_SEEDS = 20, 3
 SHARES = (0.6, 0.35, 0.6, 0.8)
-"""Put in, in turn; the first is that of the rig as it ships."""
+"""True shares, in turn; the first is the packaged rig's."""
 HELD = 0.8
-"""Share of seeds that is asked: 16 of 20."""
+"""Required share of seeds: 16 of 20."""
 WIDEST = 0.07
-"""Most that the median of the expanded uncertainties of the mean shares may be [A]: a wide one would hold anything."""
+"""Maximum median of the mean shares' expanded uncertainties [A]: a wide interval would contain anything."""
 SPEEDS = ("0.05 m/s, 0.1 m/s, 0.2 m/s, 0.3 m/s, 0.5 m/s, 1 m/s", "0.05 m/s, 0.1 m/s, 0.2 m/s")
 
 
 class Found(NamedTuple):
-    """What a seed has shown of a compound; ``rows``: of its conditions, how many hold the truth, and all."""
+    """A seed's result for a compound; ``rows``: how many of its conditions contain the truth, and all."""
 
     seed: int
     compound: str
@@ -48,7 +48,7 @@ class Found(NamedTuple):
 
     @property
     def held(self) -> bool:
-        """Return whether the interval of the mean holds what was put in."""
+        """Return whether the interval of the mean contains the true share."""
         return abs(self.share - self.truth) <= self.expanded
 
 
@@ -60,7 +60,7 @@ def measure(seed: int, *, sample: bool) -> list[Found]:
 
 
 def pairs_of(name: str, seed: int, options: tuple[str, ...], *changes: tuple[str, str]) -> list[FilmPair]:
-    """Run the recipe with some changes of its text; return what was measured dry and wet."""
+    """Run the recipe with some changes of its text; return the dry and wet results."""
     text = Path(recipes.find(name)).read_text(encoding="utf-8")
     for change in changes:
         text = text.replace(*change)
@@ -77,14 +77,14 @@ def pairs_of(name: str, seed: int, options: tuple[str, ...], *changes: tuple[str
 
 
 def found_of(seed: int, pairs: list[FilmPair], mean: SharesMean, truth: float) -> Found:
-    """Return what the conditions of a compound and their mean have shown."""
+    """Return the results of a compound's conditions and their mean."""
     own = [one.parts.share for one in pairs if one.dry.info.compound == mean.compound]
     held = sum(abs(one.value - truth) <= one.expanded for one in own)
     return Found(seed, mean.compound, truth, mean.share.value, mean.share.expanded, (held, len(own)))
 
 
 def figures(found: list[Found], seeds: int) -> Iterator[tuple[str, bool]]:
-    """Yield every figure in words, and whether it is met."""
+    """Yield every figure in words, and whether it passes."""
     by_seed = {seed: [one for one in found if one.seed == seed] for seed in range(seeds)}
     held = sum(len(own) == 2 and all(one.held for one in own) for own in by_seed.values())
     least = -int(-HELD * seeds // 1)
@@ -98,7 +98,7 @@ def figures(found: list[Found], seeds: int) -> Iterator[tuple[str, bool]]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure; 1 where a figure misses."""
+    """Measure; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.drywet", description=__doc__)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_SEEDS} seeds, the three slowest speeds")
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"seeds ({SEEDS})")

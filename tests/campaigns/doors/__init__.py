@@ -1,1 +1,1 @@
-"""Two processes and the doors between them: the same conditions as in one process, and no time-outs of our own."""
+"""Two processes and the doors between them: the same results as in one process, and no time-outs caused by our code."""

@@ -1,10 +1,10 @@
 """`python -m tests.campaigns.doors [--sample] [--keep DIR]`: one recipe in one process, over TCP and over ptys.
 
-`tester sim` and `tester run` are processes of their own, in real time: this takes some three minutes a door, and time
-cannot be scaled: `tester sim --speed` would shorten the devices' time-outs for a run whose clock is real. `--sample`
-runs one condition instead of three. Each condition's coefficient is held against the one of a run in one process with
-the same seed; what may lie between them is both expanded uncertainties of this wheel (95 %), in quadrature. Time-outs
-are held against a bare echo on a pseudo-terminal that runs beside the run over ptys. Exit code 1 where one misses.
+`tester sim` and `tester run` are processes of their own, in real time: this takes about three minutes a door, and time
+cannot be scaled: `tester sim --speed` would shorten the devices' time-outs for a run on the real clock. `--sample` runs
+one condition instead of three. Each condition's coefficient is compared with that of a run in one process with the same
+seed; they may differ by both expanded uncertainties of this wheel (95 %), in quadrature. Time-outs are compared with
+those of a bare echo on a pseudo-terminal that runs beside the run over ptys. Exit code 1 where one misses.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tests.campaigns.doors.echo import Echo
 
 OVERRIDES = ("--seed", "1")
 PATIENCE_S = 7200.0
-"""A run that takes longer is given up: the quickstart takes 45 min at the machine's own pace."""
+"""Time limit of a run: the quickstart takes 45 min in real time."""
 ECHO_S, SAMPLE_ECHO_S = 120.0, 60.0
 RECIPE = """\
 recipe: doors
@@ -57,12 +57,12 @@ def tester(*arguments: str) -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """Return an environment in which the product under test is found."""
+    """Return an environment that finds the product under test."""
     return os.environ | {"PYTHONPATH": os.pathsep.join((str(ROOT), os.environ.get("PYTHONPATH", "")))}
 
 
 def run(folder: Path, *options: str) -> Path:
-    """Run the recipe to its end and return the run's folder. Raises ValueError where it has no result."""
+    """Run the recipe to its end and return the run's folder. Raises ValueError if it has no result."""
     arguments = ["run", str(folder.parent / "recipe.yaml"), "--yes", "--out", str(folder / "runs"), *options]
     done = subprocess.run(
         tester(*arguments), env=environment(), capture_output=True, text=True, timeout=PATIENCE_S, check=False
@@ -102,7 +102,7 @@ def conditions(place: Path) -> list[tuple[str, float, float]]:
 
 
 def counted(place: Path, counter: str) -> int:
-    """Return what a run has counted on its Modbus lines."""
+    """Return a run's counts of its Modbus lines."""
     with sqlite3.connect(place / "run.db") as store:
         asked = "select sum(value) from bus_statistic where counter = ? and bus like 'line%'"
         [found] = store.execute(asked, (counter,)).fetchone()
@@ -110,7 +110,7 @@ def counted(place: Path, counter: str) -> int:
 
 
 def compare(door: str, here: Path, there: Path) -> Iterator[Figure]:
-    """Hold a run through a door against the one in one process."""
+    """Compare a run through a door with the one in one process."""
     known = conditions(here)
     found = conditions(there)
     yield equal(f"{door}: conditions", [name for name, _, _ in found], [name for name, _, _ in known])
@@ -119,7 +119,7 @@ def compare(door: str, here: Path, there: Path) -> Iterator[Figure]:
 
 
 def lateness(place: Path, echoed: tuple[int, int]) -> Iterator[Figure]:
-    """Hold a run's time-outs against the echo's, by their shares."""
+    """Compare a run's time-outs with the echo's, by their shares."""
     requests, timeouts = counted(place, "requests"), counted(place, "timeouts")
     asked, late = echoed
     expected = late * requests / asked

@@ -1,7 +1,7 @@
-"""A bare echo on a pseudo-terminal: how many replies come too late there that nothing of ours is to blame for.
+"""A bare echo on a pseudo-terminal: how many replies come too late there without our code.
 
-The far end answers each request after the time that line and device would take, from a loop that does nothing else;
-the near end asks as often as a run asks its load cell, waits as long as a run waits, and looks as often as one.
+The far end answers each request after the time of line and device, from a loop that does nothing else; the near end
+polls as often as a run polls its load cell, waits as long as a run, and looks for replies as often.
 """
 
 from __future__ import annotations
@@ -25,19 +25,19 @@ PATIENCE_S = 0.0154
 """Time-out of the load cell's profile on its line: wire times, 8 ms for the device, 3 ms margin, s."""
 ANSWERS_AFTER_S = (len(REQUEST) + len(REPLY)) * 10 / BAUD + 0.00175 + 0.001
 LOOK_S = 0.001
-"""A run looks for replies at the ticks of its lines, which are no closer than this."""
+"""A run looks for replies at the ticks of its lines, which are at least this far apart."""
 
 
 @dataclass(frozen=True, slots=True)
 class Echoed:
-    """What came of the requests."""
+    """The results of the requests."""
 
     requests: int
     timeouts: int
 
 
 def ask(port: str, seconds: float) -> Echoed:
-    """Ask for so long."""
+    """Send requests for so long."""
     priority = RealTimePriority()
     line = open_serial_line(port, BAUD)
     requests = timeouts = 0
@@ -47,7 +47,7 @@ def ask(port: str, seconds: float) -> Echoed:
         while due < end:
             due = max(due + PERIOD_S, clock.monotonic())
             clock.sleep_until(due)
-            line.read(due)  # what comes too late belongs to nobody
+            line.read(due)  # discard late replies
             asked = clock.monotonic()
             line.write(REQUEST, asked)
             requests += 1
@@ -82,7 +82,7 @@ def answer(far: int) -> None:
 
 
 class Echo:
-    """Both ends in processes of their own, beside whatever else runs."""
+    """Both ends in processes of their own, beside other work."""
 
     def __init__(self, seconds: float) -> None:
         """Begin."""
@@ -118,7 +118,7 @@ class Echo:
 
 
 def main() -> None:
-    """Be one end."""
+    """Run one end."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--answer", type=int)
     parser.add_argument("--ask", nargs=2)

@@ -1,1 +1,1 @@
-"""Does a run say so where friction changes at once, or sticks and slips, and is it silent where it does not?"""
+"""Does a run report sudden changes of friction and stick-slip, and nothing where friction is steady?"""

@@ -1,9 +1,10 @@
-"""`python -m tests.campaigns.doubts [TOPIC ...] [--sample] [--seeds N] [--jobs N]`: is what friction does told?
+"""`python -m tests.campaigns.doubts [TOPIC ...] [--sample] [--seeds N] [--jobs N]`: does a run report friction's
+changes?
 
 On the simulated rigs, a wheel on a belt and a pin on a disc, friction changes by 15 % within a first repeat, in a later
-one, and between two conditions; or it sticks and slips, by 10 % to either side, at 1 to 8 Hz. The run has to say so. In
-runs with steady friction, at many settings and with beliefs that are wrong, it has to be silent. Prints a line a
-figure; exit status 1 where one misses.
+one, and between two conditions; or it sticks and slips, by 10 % to either side, at 1 to 8 Hz. The run must report it.
+With steady friction, at many settings and with wrong beliefs, it must report nothing. Prints a line a figure; exit
+status 1 where one misses.
 """
 
 from __future__ import annotations
@@ -21,17 +22,17 @@ from tests.campaigns.doubts.runs import Found, carry_out
 
 SEEDS, SAMPLE = 20, 1
 TOLD = 0.95
-"""Share of the runs that have to say so: 19 of 20."""
+"""Share of the runs that must report it: 19 of 20."""
 FALSE = 1.0 / 200.0
-"""Share of the conditions with steady friction that may be said not to be."""
+"""Share of the conditions with steady friction that may be reported as unsteady."""
 STEADY_SEEDS, SAMPLE_STEADY = 10, 1
 NOT_ASKED = "between, no references"
-"""Nothing on record can tell it: how often it is told is stated, and nothing asked."""
+"""The record cannot show it: the share is printed without a limit."""
 TOPICS = {"steps": steps, "swings": swings, "steady": steady}
 
 
 def of_told(found: Sequence[Found]) -> Iterator[Figure]:
-    """Yield, for each thing that was done to friction, how many runs say so."""
+    """Yield how many runs report each change of friction."""
     for topic, rig in dict.fromkeys((one.case.topic, one.case.rig) for one in found if one.case.topic != "steady"):
         ours = [one for one in found if (one.case.topic, one.case.rig) == (topic, rig)]
         told = sum(one.told for one in ours)
@@ -44,7 +45,7 @@ def of_told(found: Sequence[Found]) -> Iterator[Figure]:
 
 
 def of_steady(found: Sequence[Found]) -> Iterator[Figure]:
-    """Yield in how many conditions with steady friction it is said not to be."""
+    """Yield how many conditions with steady friction are reported as unsteady."""
     ours = [one for one in found if one.case.topic == "steady"]
     if not ours:
         return
@@ -57,7 +58,7 @@ def of_steady(found: Sequence[Found]) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run everything; 1 where a figure misses."""
+    """Run everything; return 1 if a figure misses."""
     about = (__doc__ or "").partition("\n")[2]
     parser = argparse.ArgumentParser("python -m tests.campaigns.doubts", description=about)
     parser.add_argument("topics", nargs="*", metavar="TOPIC", help="all unless named: " + ", ".join(TOPICS))

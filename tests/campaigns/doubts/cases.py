@@ -1,4 +1,4 @@
-"""What is run: recipes, what friction does in them, and what the rig file believes wrongly."""
+"""The cases: recipes, their friction, and the rig file's wrong beliefs."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ SWING: Final = 0.10
 """Stick-slip swings by this share to either side."""
 SWING_HZ: Final = (1.0, 8.0)
 CLEAR_HZ: Final = 0.3
-"""A frequency of stick-slip is so far from any order of the wheel."""
+"""Minimum distance of a stick-slip frequency from any order of the wheel."""
 TURN_HZ: Final = 0.8 / (pi * 0.09)
 """Turns a second of a 90 mm wheel at 0.8 m/s."""
 LOADS: Final = ("100 N", "200 N", "300 N")
@@ -25,8 +25,8 @@ BELIEFS: Final = {
     "diameter": ("sim.wheel.outer_diameter=89.5",),
     "heat": ("observer.friction_heat_fraction=0.078", "sim.thermal.film_rotating=16.8 W/(m2 K)"),
 }
-"""What the rig file believes, off the twin's truth: wear three times as fast, a wheel half a millimetre larger than it
-is, 30 % more friction heat and a fifth less loss to the air."""
+"""The rig file's wrong beliefs about the twin: wear three times as fast, a wheel half a millimetre too large, 30 % more
+friction heat and a fifth less loss to the air."""
 
 _WHEEL: Final = """\
 recipe: doubts
@@ -67,7 +67,7 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """One run. ``condition`` and ``repeat`` (0: its soak) are where friction changes; (0, 0): nowhere."""
+    """One run. Friction changes in ``condition`` and ``repeat`` (0: its soak); (0, 0): nowhere."""
 
     topic: str
     rig: str
@@ -94,7 +94,7 @@ def disc_recipe(compound: str = "SBR", *, load: str = "20 N", speed: str = "0.1 
 
 
 def beliefs(rig: str, seed: int) -> tuple[str, ...]:
-    """Return what a rig believes in the run of a seed: a tread that has been ground in, and one of ``BELIEFS``."""
+    """Return the rig's beliefs in the run of a seed: a ground-in tread, and one of ``BELIEFS``."""
     return ("sim.running_in=0", *list(BELIEFS.values())[seed % len(BELIEFS)]) if rig == WHEEL else ()
 
 
@@ -115,7 +115,7 @@ def steps(seeds: int) -> Iterator[Case]:
 
 
 def frequencies(count: int) -> list[float]:
-    """Return frequencies of stick-slip in Hz, evenly spread over what is clear of the wheel's orders."""
+    """Return stick-slip frequencies in Hz, evenly spread over the gaps between the wheel's orders."""
     low, high = SWING_HZ
     fine = [low + (high - low) * i / 999 for i in range(1000)]
     clear = [hz for hz in fine if min(abs(hz - k * TURN_HZ) for k in range(1, 5)) >= CLEAR_HZ]

@@ -1,4 +1,4 @@
-"""Runs of cases on the simulated rigs, and what their records say."""
+"""Runs of cases on the simulated rigs, and the content of their records."""
 
 from __future__ import annotations
 
@@ -34,7 +34,8 @@ class Seen:
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What a run said. ``span_s``: rig times of the first and the last sample of the case's repeat; NaN without one."""
+    """What a run reported. ``span_s``: rig times of the first and the last sample of the case's repeat; NaN without
+    one."""
 
     case: Case
     code: int
@@ -43,7 +44,7 @@ class Found:
 
     @property
     def told(self) -> bool:
-        """Tell whether the run says of what was done to friction that its coefficients are in doubt."""
+        """Return whether the run doubts the coefficients affected by the change of friction."""
         case = self.case
         if case.hz:
             return bool(self.conditions) and all(STICK_SLIP in one.doubts for one in self.conditions)
@@ -53,12 +54,13 @@ class Found:
 
     @property
     def false(self) -> int:
-        """Return in how many conditions of a steady run friction is said not to be."""
+        """Return how many conditions of a steady run are reported as unsteady."""
         return sum(any(doubt in OURS for doubt in one.doubts) for one in self.conditions)
 
 
 def carry_out(case: Case) -> Found:
-    """Run a case. Where its step is to lie within a repeat, a run without it says when that repeat's samples are."""
+    """Run a case. If its step lies within a repeat, a run without the step first gives the times of that repeat's
+    samples."""
     if not case.condition:
         return _run(case, ())
     when = f"condition {case.condition}"

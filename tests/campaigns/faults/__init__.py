@@ -1,1 +1,1 @@
-"""The fault campaign: does the rig stay safe, whatever breaks, whenever it breaks?"""
+"""The fault campaign: does the rig stay safe, no matter what breaks and when?"""

@@ -1,6 +1,6 @@
 """`python -m tests.campaigns.faults --full | --sample | --mutants`: the fault campaign, one line a figure.
 
-Exit status 0 when every figure is what is asked for, 1 when one misses it.
+Exit status 0 if every figure passes, 1 if one misses.
 """
 
 from __future__ import annotations
@@ -47,24 +47,24 @@ from tests.campaigns.faults.recipes import GRID, has, language_of
 SAMPLE_CASES = 420
 TRACK_CASES, TRACK_PAIRS = 300, 150
 SAMPLE_CPU_S, FULL_CPU_S, SHORT_LIMITS_CPU_S = 140.0, 2100.0, 60.0
-"""Processor time at most, s on the machine that limits are thought on (``effort.LOOP_S``).
-
-The sample took 109 s, 124 s so scaled; the loop itself is known to 8 %.
+"""Maximum processor time, s on the reference machine (``effort.LOOP_S``). The sample took 109 s, which scales to 124 s;
+the loop itself is known to 8 %.
 """
 SAMPLE_SCANS = 40
 SPARSE = 10
 """Emergency stop and hold come at every tenth scan: abort, fast stop and kill at every one."""
 UNNOTICED = 0.2
-"""Share of the cases with a budget, begun in a run, in which the fault may never show: no load follows, say."""
+"""Share of the cases with a budget, begun in a run, in which the fault may never show, for example because no load
+follows."""
 DOUBLES_AT = ("1 install install, begin", "2 heat heat, middle", "2 heat soak, middle", "3 3#: measure, middle")
-"""Places of the heated recipe at which the pairs of hardware's list are tried: standing, approaching, hot, sliding."""
+"""Places of the heated recipe where the hardware list's pairs are tried: standing, approaching, hot, sliding."""
 HOLD = ("sim.press_on_power_loss=hold", "axes.press.screw.spring=0 N")
-"""The rig whose press stays where it is without power; sampled beside the one with a spring."""
+"""The rig whose press holds its position without power; sampled besides the one with a spring."""
 
 
 @dataclass(slots=True)
 class Report:
-    """Figures as they come, and whether one has missed."""
+    """Prints figures as they come, and records whether one has missed."""
 
     missed: list[str] = field(default_factory=list[str])
 
@@ -75,13 +75,13 @@ class Report:
             self.missed.append(name)
 
     def causes(self, tally: Tally, most: int) -> None:
-        """Print what failed, one line a fault."""
+        """Print the failures, one line a fault."""
         for count, text in tally.causes()[:most]:
             print(f"       {count} x {text}", flush=True)
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Conduct what is asked for; return the exit status."""
+    """Conduct the requested campaign; return the exit status."""
     parser = argparse.ArgumentParser(prog="python -m tests.campaigns.faults", description=__doc__)
     kind = parser.add_mutually_exclusive_group(required=False)
     kind.add_argument("--full", action="store_true", help="every fault x step x phase, pairs, every scan")
@@ -132,8 +132,8 @@ def listed(recipes: Sequence[str]) -> None:
 
 
 def on_track(options: argparse.Namespace) -> int:
-    """Conduct the campaign of a specimen on a track: a sample of its grid, or all of it, and its rows; return the
-    exit status."""
+    """Conduct the campaign of a specimen on a track: its rows, and its grid or a sample of it; return the exit
+    status."""
     if options.list:
         listed(track.GRID)
         return 0
@@ -258,7 +258,7 @@ def at_the_limits(report: Report, options: argparse.Namespace, *, short: bool) -
 
 
 def searched(report: Report, jobs: int, only: str) -> None:
-    """Search every fault with a magnitude; what harms must stand in the written table."""
+    """Search every fault with a magnitude; harmful magnitudes must be in the written table."""
     effort = Effort()
     found: list[magnitudes.Found] = []
     for one in magnitudes.conduct(jobs, only):
@@ -303,7 +303,7 @@ def _judged(verdict: Verdict) -> bool:
 
 
 def everywhere(report: Report, tally: Tally) -> None:
-    """Print which faults with a budget could be noticed in no case at all."""
+    """Print which faults with a budget could not be noticed in any case."""
     seen = {verdict.case.faults[0] for verdict in tally.verdicts if verdict.exposed and _judged(verdict)}
     never = sorted({v.case.faults[0] for v in tally.verdicts if _judged(v)} - seen - UNEXPOSED.keys())
     report.figure(f"{tally.name}: faults exposed nowhere", ", ".join(never) or "0", "0 outside the list", not never)
@@ -333,7 +333,7 @@ def again(report: Report, most: int) -> None:
 
 
 def needed(report: Report, jobs: int, at: Sequence[Moment], rows: tuple[MustHold, ...] = HARDWARE_MUST_HOLD) -> None:
-    """Print for each row of hardware's list in how many of its cases software alone would not do."""
+    """Print for each row of the hardware list the number of its cases in which software alone is not enough."""
     for row in rows:
         cases = [(moment, pair) for moment in at for pair in row.pairs if all(has(moment.recipe, one) for one in pair)]
         tally = conduct("doubles", cases, jobs, budgets=False)
@@ -342,7 +342,7 @@ def needed(report: Report, jobs: int, at: Sequence[Moment], rows: tuple[MustHold
 
 
 def held_press(report: Report, tally: Tally, most: int) -> None:
-    """Print the figures of a rig whose press stays where it is without power."""
+    """Print the figures of a rig whose press holds its position without power."""
     name, count = tally.name, len(tally.verdicts)
     held = [verdict for verdict in tally.unsafe if press_must_lift(verdict)]
     outside = Tally(name, [verdict for verdict in tally.verdicts if verdict not in held])
@@ -356,7 +356,7 @@ def held_press(report: Report, tally: Tally, most: int) -> None:
 def doubles(
     report: Report, tally: Tally, most: int, asked: int = 700, rows: tuple[MustHold, ...] = HARDWARE_MUST_HOLD
 ) -> None:
-    """Print the figures of the pairs; ``rows``: those that hardware must hold."""
+    """Print the figures of the pairs; ``rows``: those that hardware must prevent."""
     outside: list[Verdict] = [v for v in tally.unsafe if held_by_hardware(v.case.faults, rows) is None]
     report.figure("pairs", len(tally.verdicts), f">= {asked}", len(tally.verdicts) >= asked)
     held = len(tally.unsafe) - len(outside)
@@ -381,7 +381,7 @@ def late(report: Report, most: int) -> None:
 
 
 def spent(report: Report, effort: Effort, most_s: float) -> None:
-    """Print the processor time, of this process and its workers, scaled to the machine that limits are thought on."""
+    """Print the processor time of this process and its workers, scaled to the reference machine."""
     effort.look()
     used_s = effort.reference_s
     value = f"{used_s:.0f} s, {effort.used_s:.0f} s here"

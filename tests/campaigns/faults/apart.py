@@ -1,7 +1,7 @@
-"""Work on a stage that leaves it as it was: done in a fork of this process, or on a copy where there is no fork.
+"""Work on a stage that leaves it unchanged: in a fork of this process, or on a copy where forks are unavailable.
 
-A fork takes everything along, a conversation with a drive and compiled classes included, which cannot be copied: so the
-campaign may also be run against a compiled installation.
+A fork also duplicates what cannot be copied, such as a conversation with a drive and compiled classes, so the campaign
+also runs on a compiled installation.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ FORKS = hasattr(os, "fork")
 
 
 class ApartError(Exception):
-    """The work has failed in its fork; the message is its traceback."""
+    """The work failed in its fork; the message is its traceback."""
 
 
 def apart(work: Callable[[], Result]) -> Result:
@@ -33,7 +33,7 @@ def apart(work: Callable[[], Result]) -> Result:
     if child == 0:
         try:
             said = pickle.dumps((True, work()))
-        except BaseException:  # noqa: BLE001 - whatever it is, the parent shall know
+        except BaseException:  # noqa: BLE001 - reported to the parent
             said = pickle.dumps((False, format_exc()))
         theirs.send_bytes(said)
         os._exit(0)
@@ -51,13 +51,13 @@ def apart(work: Callable[[], Result]) -> Result:
 
 
 class Post(Generic[Order, Result]):
-    """A fork that stays: it does each order in a fork of its own, from where it was made.
+    """A permanent fork: it executes each order in a fork of its own, from the state in which it was made.
 
-    Ends with the process that made it.
+    Ends with its parent process.
     """
 
     def __init__(self, work: Callable[[Order], Result]) -> None:
-        """Begin to stand here."""
+        """Fork here."""
         self._ours, theirs = Pipe()
         sys.stdout.flush()
         if os.fork() == 0:
@@ -68,7 +68,7 @@ class Post(Generic[Order, Result]):
         theirs.close()
 
     def do(self, order: Order) -> Result:
-        """Return what the work makes of an order. Raises ApartError."""
+        """Return the result of the work for an order. Raises ApartError."""
         self._ours.send(order)
         well, result = self._ours.recv()
         if not well:

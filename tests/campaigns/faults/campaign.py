@@ -16,9 +16,9 @@ from tests.campaigns.faults.recipes import GRID, language_of
 
 SEED = 402
 PAIRS = 720
-"""Pairs of faults in the full campaign; at least 700 are asked for."""
+"""Pairs of faults in the full campaign; at least 700 are required."""
 PARTS = 8
-"""Shares that the cases of a recipe are cut into at most."""
+"""Maximum number of shares of a recipe's cases."""
 
 SAME_AGAIN = (
     "camber", "sideslip drive data", "sideslip drive of", "sideslip drive SDO", "sideslip drive without",
@@ -37,19 +37,20 @@ SAME_AGAIN = (
     "press drive data", "wheel drive mode", "press drive mode", "thermometer replies merged",
     "thermometer replies split", "jacket replies split", "common cabinet air",
 )  # fmt: skip
-"""Faults whose phrase begins so are those of another axis or device over again: in the sample, not in the full grid."""
+"""Faults whose phrase begins like this repeat those of another axis or device: left out of the sample, not of the full
+grid."""
 
 
 @dataclass(slots=True)
 class Tally:
-    """What a campaign has found."""
+    """The results of a campaign."""
 
     name: str
     verdicts: list[Verdict] = field(default_factory=list[Verdict])
 
     @property
     def failed(self) -> list[Verdict]:
-        """Cases that are not as they must be."""
+        """Failed cases."""
         return [verdict for verdict in self.verdicts if verdict.failures]
 
     @property
@@ -74,7 +75,7 @@ class Tally:
 
 
 def all_cases(moments: Iterable[Moment], faults: Sequence[str]) -> list[tuple[Moment, tuple[str, ...]]]:
-    """Return every fault at every moment; those of assembly are there from the beginning, or not at all."""
+    """Return every fault at every moment; assembly faults begin at the start only."""
     return [
         (moment, (fault,)) for moment in moments for fault in faults
         if moment.step.startswith("0 ") or not fault.startswith(ASSEMBLY)
@@ -82,7 +83,7 @@ def all_cases(moments: Iterable[Moment], faults: Sequence[str]) -> list[tuple[Mo
 
 
 def sample(cases: list[tuple[Moment, tuple[str, ...]]], count: int) -> list[tuple[Moment, tuple[str, ...]]]:
-    """Return ``count`` cases that between them have every fault and every moment, evenly spread; always the same."""
+    """Return ``count`` cases that together contain every fault and every moment, evenly spread; always the same."""
     chosen = list(cases)
     random.Random(SEED).shuffle(chosen)
     faults: Counter[tuple[str, ...]] = Counter()
@@ -124,7 +125,8 @@ def rehearsals(recipes: Iterable[str] = GRID) -> list[Moment]:
 
 
 def faults_of_campaign(*, everything: bool) -> list[str]:
-    """Return the faults of the catalogue; without ``everything`` what differs only in axis or device only once."""
+    """Return the faults of the catalogue; without ``everything`` only one of those that differ only in axis or
+    device."""
     return [name for name in language_of(GRID[0]).catalogue if everything or not name.startswith(SAME_AGAIN)]
 
 
@@ -139,7 +141,7 @@ class Share:
 
 
 def do_share(share: Share) -> list[Verdict]:
-    """Run the recipe of a share once and judge each of its cases from a copy made on the way."""
+    """Run the recipe of a share once and judge each of its cases on a copy made during the run."""
     by_tick: dict[Moment, list[tuple[str, ...]]] = {}
     for moment, names in share.cases:
         by_tick.setdefault(moment, []).append(names)
@@ -163,7 +165,7 @@ def conduct(
     budgets: bool = True,
     parts: int = PARTS,
 ) -> Tally:
-    """Judge every case, on ``jobs`` processors; each share of a recipe, ``parts`` at most, runs it anew."""
+    """Judge every case, on ``jobs`` processors; each share of a recipe, at most ``parts``, runs the recipe again."""
     tally = Tally(name)
     shares = [replace(share, budgets=budgets) for share in _shares(cases, overrides, parts)]
     results = _in_turn(shares) if jobs == 1 else _at_once(shares, jobs)

@@ -1,7 +1,7 @@
-"""The corners of what a rig may be asked for: recipes at the limits of its rig file, with rubber unlike its beliefs.
+"""The corners of a rig's range: recipes at the limits of its rig file, with rubber that differs from its beliefs.
 
-The greatest load, temperature and slip velocity are those that `tester check` lets through, found from the rig file, in
-this order; nothing of them is written here. Every corner has to run without a trip before a fault is tried in it.
+The greatest load, temperature and slip velocity are those that `tester check` accepts, found from the rig file in this
+order; none is written here. Every corner must run without a trip before a fault is tried in it.
 """
 
 from __future__ import annotations
@@ -18,12 +18,12 @@ from tester.kinds.wheel_on_belt.rig import RigConfig
 
 COMPOUNDS = ("1#", "2#", "3#")
 STIFFNESS = (0.75, 1.3)
-"""Of the contact, as a share of what the rig file believes."""
+"""Stiffness of the contact, as a share of the rig file's belief."""
 HEAT = (0.7, 1.3)
-"""Of friction, into the rubber, as a share of what the rig file believes."""
+"""Friction heat into the rubber, as a share of the rig file's belief."""
 LOAD_STEP_N, SLIP_STEP_MM_S, TEMPERATURE_STEP_K = 1, 10, 1
 GROUND_IN = "sim.running_in=0"
-"""The wheel has been ground in: new rubber grips by a tenth more, and to grind takes longer than all the rest."""
+"""The wheel is ground in: new rubber grips a tenth better, and grinding takes longer than all the rest."""
 WHEEL_M_S, PRE_GRIND_BELT_M_S = 0.8, 0.6
 """Rim speed of the paper's tests; the belt in pre-grinding."""
 
@@ -48,9 +48,9 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class Corner:
-    """A compound's greatest load (N), slip velocity (mm/s) and temperature (degC), on a rig that is unlike its file.
+    """A compound's greatest load (N), slip velocity (mm/s) and temperature (degC), on a rig that differs from its file.
 
-    ``stiffness`` and ``heat`` are shares of what the rig file believes of the contact and of friction's heat.
+    ``stiffness`` and ``heat`` are shares of the rig file's beliefs of the contact and of friction's heat.
     """
 
     compound: str
@@ -63,7 +63,7 @@ class Corner:
 
     @property
     def name(self) -> str:
-        """In words."""
+        """As text."""
         return f"{self.compound}, stiffness {self.stiffness - 1:+.0%}, friction heat {self.heat - 1:+.0%}"
 
     @property
@@ -86,7 +86,7 @@ def corners() -> dict[str, Corner]:
 
 
 def _unlike(rig: RigConfig, stiffness: float, heat: float) -> tuple[str, ...]:
-    """Return what makes the simulated rig differ by these shares from what its file believes."""
+    """Return the overrides that make the simulated rig differ by these shares from its file's beliefs."""
     believed, fraction = rig.loops.load.stiffness_n_per_mm, rig.observer.friction_heat_fraction
     return (
         f"sim.contact.reference_stiffness={stiffness * believed:g} N/mm",
@@ -98,7 +98,7 @@ def _unlike(rig: RigConfig, stiffness: float, heat: float) -> tuple[str, ...]:
 def _greatest(compound: str, rig: RigConfig) -> tuple[int, int, int]:
     """Return load (N), slip velocity (mm/s) and temperature (degC) beyond each of which ``check`` refuses the recipe.
 
-    Load and temperature are found where there is hardly any slip, the slip last.
+    Load and temperature are found with hardly any slip; slip comes last.
     """
     mild_mm_s, warm_c = SLIP_STEP_MM_S, int(rig.ambient_c) + 1
     limits = rig.limits
@@ -113,7 +113,7 @@ def _greatest(compound: str, rig: RigConfig) -> tuple[int, int, int]:
 
 
 def _most(passes: Callable[[int], bool], start: int, step: int) -> int:
-    """Return the first of ``start``, ``start`` - ``step``, ... that passes. Raises ValueError where none does."""
+    """Return the first of ``start``, ``start`` - ``step``, ... that passes. Raises ValueError if none does."""
     for value in range(start, 0, -step):
         if passes(value):
             return value

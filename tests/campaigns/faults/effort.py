@@ -1,6 +1,7 @@
-"""Processor time as a share of a fixed loop's, timed in the same run: what a campaign costs, whatever the machine.
+"""Processor time as a share of a fixed loop's, timed in the same run: the cost of a campaign, independent of the
+machine.
 
-A machine that is slower today, or shares its cores, is slower in the loop as well: a limit in loops stays what it is.
+A machine that is slower today, or shares its cores, is also slower in the loop: a limit in loops stays valid.
 """
 
 from __future__ import annotations
@@ -11,8 +12,8 @@ from time import process_time
 from typing import Final
 
 LOOP_S: Final = 0.1
-"""What the loop takes on the machine that limits are thought on, where `python3 -c pass` takes 15 ms of CPU time: 6.5
-times as long (CPython 3.11: 6.0 to 7.2 in eight measurements)."""
+"""Duration of the loop on the reference machine, where `python3 -c pass` takes 15 ms of CPU time: 6.5 times as long
+(CPython 3.11: 6.0 to 7.2 in eight measurements)."""
 _ROUNDS, _TIMES = 300_000, 3
 
 
@@ -22,7 +23,7 @@ def cpu_s() -> float:
 
 
 class Effort:
-    """Counts the processor time since it was made; ``look`` times the loop again, between the parts of it."""
+    """Counts the processor time since it was created; ``look`` times the loop again between parts."""
 
     def __init__(self) -> None:
         """Begin to count."""
@@ -32,7 +33,7 @@ class Effort:
         self.look()
 
     def look(self) -> None:
-        """Time the loop: the least of a few times, which counts for nothing itself."""
+        """Time the loop: the least of a few times; its own time is not counted."""
         before = cpu_s()
         self._loops_s.append(min(_loop_s() for _ in range(_TIMES)))
         self._looked_s += cpu_s() - before
@@ -44,7 +45,7 @@ class Effort:
 
     @property
     def reference_s(self) -> float:
-        """The same as it would be on the machine that limits are thought on, s."""
+        """The same scaled to the reference machine, s."""
         return self.used_s / median(self._loops_s) * LOOP_S
 
 

@@ -1,6 +1,6 @@
-"""When a fault can be noticed: told from the plant, the devices and the plan, never from what control believes.
+"""When a fault can be noticed, judged from the plant, the devices and the plan, never from control's beliefs.
 
-A fault that keeps control from wanting or knowing something must not switch its own budget off by that.
+A fault that hides something from control must not thereby switch its own budget off.
 """
 
 from __future__ import annotations
@@ -21,34 +21,35 @@ from tests.campaigns.faults.wheel_harm import Truth
 
 TURNS_M_S = 0.04
 FITTED_S = 1.1
-"""After a wheel was changed two readings of a temperature are not compared for a second."""
+"""For a second after a wheel change, two temperature readings are not compared."""
 LOADED_N = 20.0
 """Below this the contact counts as unloaded (docs/kinds/wheel-on-belt.md)."""
 HELD_SHARE = 0.45
-"""A load is held from this share of the recipe's greatest on: the interlocks of a held load begin at half of it."""
+"""A load counts as held from this share of the recipe's greatest on: the interlocks of a held load begin at half of
+it."""
 LIFTS_MM_S = -5.0
-"""A press told to go back faster than this lifts; holding a load it moves by 2 mm/s at most."""
+"""A press commanded to retract faster than this is lifting; while holding a load it moves at most 2 mm/s."""
 DRIVEN_M_S = 0.06
-"""The drives make slip: above the 50 mm/s from which "belt torn" is judged."""
+"""The drives make slip: above the 50 mm/s threshold of "belt torn"."""
 ASTRAY_M_S = 0.1
-"""Twice what a speed may be off its command."""
+"""Twice the allowed difference between a speed and its command."""
 DEPTH_SHARE, DEPTH_MM = 1.3, 0.55
-"""What "contact too deep" leaves (1.3 times, 0.2 mm), and what a touch may be noted late where the cell reads half."""
+"""The margin of "contact too deep" (1.3 times, 0.2 mm), plus the delay of noticing a touch when the cell reads half."""
 MISREAD_K = 9.5
-"""Off the truth by this: the model's 8 K, the bias of a session, and what the model itself is off."""
+"""Deviation from the truth: the model's 8 K, the bias of a session, and the model's own error."""
 OUTPUT_PERCENT, BELOW_K = 82.0, 6.0
-"""More output, and colder, than "heater line open" asks for (80 %, 5 K)."""
+"""More output, and colder, than "heater line open" requires (80 %, 5 K)."""
 HIDDEN_K, HIDDEN_SHARE = 6.0, 0.6
-"""Hotter than shown by more than "heat not shown" lets pass (5 K, and 1 K of a sound sensor), and by twice its share of
-what is shown above ambient (0.3)."""
+"""Hotter than shown by more than "heat not shown" allows (5 K, and 1 K of a sound sensor), and by twice its share of
+the rise shown above ambient (0.3)."""
 ABOVE_K = 8.5
-"""More than "jacket runaway" asks for (8 K)."""
+"""More than "jacket runaway" requires (8 K)."""
 HOT_C = 115.0
-"""A hub hotter than any recipe of the campaign needs by 45 K; harm is 155 degC [A]."""
+"""45 K hotter than the hub in any recipe of the campaign; harm is 155 degC [A]."""
 
 
 class Exposed:
-    """Tells of one fault, from its onset on, whether it can be noticed."""
+    """Judges from the onset of a fault whether it can be noticed."""
 
     def __init__(self, stage: Stage, kind: FaultKind) -> None:
         """Begin at the onset."""
@@ -67,7 +68,7 @@ class Exposed:
         self._settled = stage.running and fitted and stage.next_s - stage.step_since_s > FITTED_S
 
     def now(self) -> bool:
-        """Tell whether the fault can be noticed now."""
+        """Return whether the fault can be noticed now."""
         stage, exposure = self.stage, self.kind.exposure
         scans = stage.run.engine.scans
         if exposure is Exposure.ALWAYS:
@@ -139,7 +140,7 @@ _THERMAL = frozenset({
 
 
 def io_of(stage: Stage) -> SafetyIo:
-    """Return the inputs and outputs at the press drive. Raises LookupError where there are none."""
+    """Return the inputs and outputs at the press drive. Raises LookupError if there are none."""
     for drive in stage.rig.axes.values():
         if drive.io is not None:
             return drive.io
@@ -155,7 +156,7 @@ def driven_slip_m_s(stage: Stage) -> float:
 
 
 def astray_m_s(stage: Stage, axis: str) -> float:
-    """Return how far the speed that a drive shows is off the one that it was last told over the wire, m/s."""
+    """Return the difference between the speed that a drive shows and its last command on the wire, m/s."""
     rig, drive = stage.rig, stage.rig.axes[axis]
     per = drive.config.velocity_increments
     shown = drive.axis.value
@@ -167,7 +168,8 @@ def astray_m_s(stage: Stage, axis: str) -> float:
 
 
 def excess_mm(stage: Stage) -> float:
-    """Return how much deeper the press is than DEPTH_SHARE of what the load shown needs by the rig file, mm."""
+    """Return how much deeper the press is than DEPTH_SHARE of the depth that the shown load needs by the rig file,
+    mm."""
     source, plant = stage.rig.cell.source, stage.rig.plant
     shown_n = true_n = plant.force_z_n
     if isinstance(source, SpoiledForces):
@@ -178,7 +180,7 @@ def excess_mm(stage: Stage) -> float:
 
 
 def misread_k(stage: Stage) -> float:
-    """Return how far the thermometer shows off the true surface, K; infinite where it shows nothing."""
+    """Return the thermometer's error against the true surface, K; infinite if it shows nothing."""
     source = stage.rig.ir.source
     if not isinstance(source, SpoiledTemperature):
         return 0.0

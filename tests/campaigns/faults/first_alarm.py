@@ -1,4 +1,4 @@
-"""What is pulled out of a running machine, and the thing that the first alarm has to name."""
+"""Things pulled out of a running machine, and the first alarm, which must name them."""
 
 from __future__ import annotations
 
@@ -14,14 +14,14 @@ from tests.campaigns.faults.stage import Stage
 
 RECIPE = "short"
 IN_PHASE_S = 0.3
-"""So long after a phase began things are pulled out, s."""
+"""Delay between the beginning of a phase and a pull, s."""
 LONGEST_S = 12.0
-"""A device that is not needed at the moment is missed within this: once a second it is asked again, five times."""
+"""A device that is not needed at the moment is missed within this time: it is polled once a second, five times."""
 
 
 @dataclass(frozen=True, slots=True)
 class Pulled:
-    """Something that comes loose: lines of a fault script, and the words one of which the first alarm must have."""
+    """Something that comes loose: lines of a fault script, and words; the first alarm must contain one of them."""
 
     what: str
     faults: tuple[str, ...]
@@ -41,7 +41,7 @@ PULLED: tuple[Pulled, ...] = (
 
 
 def text_of_first_trip(stage: Stage, one: Pulled, after_s: float = 0.0) -> str:
-    """Pull it ``after_s`` after the next tick; return name and text of the first trip, "" where nothing trips."""
+    """Pull it ``after_s`` after the next tick; return name and text of the first trip, "" if nothing trips."""
     began_s = stage.next_s + after_s
     for fault in one.faults:
         stage.inject(language_of(RECIPE).parse(f"t=0 s: {fault}").shifted(began_s))
@@ -63,9 +63,9 @@ def text_of_first_trip(stage: Stage, one: Pulled, after_s: float = 0.0) -> str:
 def conduct(
     pulled: Iterable[Pulled], phases: Iterable[str], seed: int = 0, moments_s: Iterable[float] = (0.0,)
 ) -> dict[tuple[str, str], str]:
-    """Pull each thing IN_PHASE_S after each of these phases began first; return what the first alarms said.
+    """Pull each thing IN_PHASE_S after the first beginning of each of these phases; return the first alarms.
 
-    ``moments_s``: pull it so long after the tick that comes then, each time in a copy; the place names the moment.
+    ``moments_s``: pull it so long after the next tick, each time in a copy; the place names the moment.
     """
     moments_s = tuple(moments_s)
     pulled, wanted = tuple(pulled), set(phases)
@@ -87,7 +87,7 @@ def conduct(
 
 
 def unnamed(found: dict[tuple[str, str], str]) -> list[str]:
-    """Return the first alarms that do not name what was pulled."""
+    """Return the first alarms that do not name the pulled thing."""
     names = {one.what: one.names for one in PULLED}
     return [
         f"{what}, {place}: {text or 'no alarm'}"

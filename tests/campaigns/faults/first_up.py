@@ -1,7 +1,7 @@
-"""For every row of the interlock table: a fault of the catalogue that trips it first, or why none can.
+"""For every row of the interlock table: a fault of the catalogue that trips it first, or the reason why none can.
 
-The judge asks that a fault trips in time, not which row does it, and rows overlap: with one gone another may be as
-quick. Here each row has to be the first cause of something.
+The judge requires a trip in time, by any row, and rows overlap: without one, another may be as quick. Here each row
+must be the first cause of some trip.
 """
 
 from __future__ import annotations
@@ -19,18 +19,18 @@ SLIDE, ROLL, HEAT, WARM = ("short", "measure"), ("short", "wait"), ("heated", "h
 """(recipe, phase): sliding at 0.3 m/s under 200 N; rolling; heating up, lifted; rolling with the hub at 64 degC."""
 LONGEST_S = 20.0
 UNWITNESSED = ("interlocks.force_step=1000 N", "interlocks.press_torque_margin=1000 N")
-"""The witnesses of the force are sooner than the rows that look at the force alone."""
+"""The witnesses of the force are earlier than the rows that look at the force alone."""
 UNGRIPPED = ("interlocks.belt_pull=100 N m", "interlocks.belt_torque=100 N m")
 """The belt drive's torque denies a direction sooner than friction and power do."""
 UNHIDDEN = ("interlocks.hidden_model=100 K",)
-"""While the hub heats, "hub hotter than shown" is sooner than the row that looks at the surface alone."""
+"""While the hub heats, "hub hotter than shown" is earlier than the row that looks at the surface alone."""
 
 
 @dataclass(frozen=True, slots=True)
 class First:
     """A row, the faults that trip it (fault script lines, times from the beginning), and where that begins.
 
-    ``overrides``: where another row comes sooner on the packaged rig, the setting that puts it out of the way.
+    ``overrides``: settings that delay another row that would trip earlier on the packaged rig.
     """
 
     interlock: str
@@ -124,13 +124,13 @@ NEVER_FIRST: dict[str, str] = {
 
 
 def left_out() -> list[str]:
-    """Return the rows that stand in neither list."""
+    """Return the rows that are in neither list."""
     known = {row.interlock for row in FIRST} | NEVER_FIRST.keys()
     return [row.name for row in TABLE.rows if row.name not in known]
 
 
 def conduct(rows: Iterable[First] = FIRST) -> dict[First, str]:
-    """Let the faults of each row happen; return what was the first cause ("" where nothing tripped)."""
+    """Start the faults of each row; return the first cause ("" if nothing tripped)."""
     rows = tuple(rows)
     found: dict[First, str] = {}
     groups: dict[tuple[str, tuple[str, ...]], list[First]] = {}
@@ -150,7 +150,7 @@ def conduct(rows: Iterable[First] = FIRST) -> dict[First, str]:
 
 
 def first_cause(stage: Stage, row: First) -> str:
-    """Let a row's faults happen; return the first trip, or warning where the row is none but a warning."""
+    """Start a row's faults; return the first trip, or the first warning if the row only warns."""
     began_s = stage.next_s
     for text in row.faults:
         injection = language_of(row.where[0]).parse(text)

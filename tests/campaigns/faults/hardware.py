@@ -1,8 +1,8 @@
-"""What software cannot hold, and which device of the rig must.
+"""What software cannot prevent, and which device of the rig must.
 
-Pairs of faults in which harm is possible whatever the software does, each with the device that has to prevent it.
-Single faults after which the load stays on where the press holds its place without power. docs/kinds/wheel-on-belt.md
-shows both lists to users; whatever else does harm fails the campaign.
+Pairs of faults that can do harm in spite of any software, each with the device that must prevent it. Single faults
+after which the load stays on if the press holds its position without power. docs/kinds/wheel-on-belt.md shows both
+lists to users; any other harm fails the campaign.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ from tests.campaigns.faults.judge import Verdict
 
 @dataclass(frozen=True, slots=True)
 class MustHold:
-    """A fault with any of some others (phrases of the catalogue), the device that must hold, and why."""
+    """A fault with any of some others (phrases of the catalogue), the device that must prevent harm, and why."""
 
     one: str
     others: tuple[str, ...]
@@ -22,7 +22,7 @@ class MustHold:
     why: str
 
     def covers(self, faults: tuple[str, ...]) -> bool:
-        """Tell whether a pair is one of these."""
+        """Return whether a pair is one of these."""
         if len(faults) != 2:
             return False
         first, second = faults
@@ -74,10 +74,10 @@ UNEXPOSED: dict[str, str] = {
     "contactor welded": "it is to open when a run ends: tests/campaigns/faults/first_up.py shows it there",
     "hub sensor reads low": "it takes longer than a case is watched: tests/campaigns/faults/first_up.py waits for it",
 }
-"""Faults with a budget that nothing can show in any case of the grid, and where they are shown instead."""
+"""Faults with a budget that cannot show in any case of the grid, and where they are tested instead."""
 
 PRESS_RELEASE = "spring or counterweight that lifts the press without power, or a second release of it"
-"""The device that must hold where `press.on_power_loss` is `hold`."""
+"""The device that must prevent harm if `press.on_power_loss` is `hold`."""
 
 UNLIFTED: tuple[tuple[str, str], ...] = (
     ("press drive fault", "the drive in fault has no power"),
@@ -105,7 +105,7 @@ UNLIFTED: tuple[tuple[str, str], ...] = (
 
 
 def press_must_lift(verdict: Verdict) -> bool:
-    """Tell whether a single fault has left nothing but the load, because it takes the press's power or commands."""
+    """Return whether a single fault left only the load on, because it takes the press's power or commands."""
     faults = verdict.case.faults
     return len(faults) == 1 and verdict.only_force and any(faults[0].startswith(row[0]) for row in UNLIFTED)
 

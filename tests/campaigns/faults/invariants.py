@@ -1,6 +1,7 @@
-"""The invariants of docs/kinds/wheel-on-belt.md that can be seen in one scan: what is commanded against what is known.
+"""The invariants of docs/kinds/wheel-on-belt.md that can be seen in one scan: commands against knowledge.
 
-I5 (safe in three seconds), I4 (budgets) and I8 (nothing committed after a trip) are the judge's; I12 is the service's.
+The judge checks I5 (safe in three seconds), I4 (budgets) and I8 (nothing committed after a trip); the service checks
+I12.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ if TYPE_CHECKING:
 WORKING = frozenset({"run", "hold"})
 AT_REST = frozenset({"idle", "latched"})
 SLOW_M_S = 0.02
-"""A wheel slower than this does not turn (``standing`` of the rig file)."""
+"""A wheel slower than this counts as standing (``standing`` of the rig file)."""
 SHARE = 1.001
 """A command may exceed its limit by a rounding."""
 
@@ -35,7 +36,7 @@ class Invariants:
         """Look at the commands of the last scan, if there was a new one."""
         engine = stage.run.engine
         if engine.scans == self._scans or engine.control.state.events:
-            return  # events that wait: something was asked for after the scan, the next one acts on it
+            return  # pending events: requested after the scan, the next scan acts on them
         self._scans = engine.scans
         mode = engine.control.state.mode.value
         self._heat(stage, mode)

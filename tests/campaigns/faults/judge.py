@@ -1,4 +1,4 @@
-"""One case of the campaign: a run, a fault at a moment of it, and what has come of it."""
+"""One case of the campaign: a run, a fault at a moment of it, and the verdict."""
 
 from __future__ import annotations
 
@@ -14,28 +14,29 @@ from tests.campaigns.faults.stage import Stage
 from tests.campaigns.faults.wheel_harm import SAFE_S
 
 WATCHED_S = 6.0
-"""A fault that ends nothing is watched this long, s of rig time, and 3 s longer than its budget; a slow one SLOW_S."""
+"""A fault that does not end the run is watched this long, s of rig time, and 3 s longer than its budget; a slow one
+SLOW_S."""
 LATCHED_S = SAFE_S + 1.0
-"""A stop that does not come to its end is watched this long."""
+"""A stop that does not finish is watched this long."""
 SLOW_S = 125.0
 MISSED_S = 1.0
-"""A fault that only the next connection can see is watched this long in a run."""
+"""A fault that only the next connection can detect is watched this long in a run."""
 SETTLED_S = 0.5
 """An end state counts as reached when it has lasted this long."""
 ROUNDING_S = 0.011
-"""Ticks are at most this far apart while something happens; a budget is not missed by a rounding."""
+"""Ticks are at most this far apart while something happens; rounding must not miss a budget."""
 AFTER_S = 5.0
-"""Every tenth end state is watched this much longer, acknowledged, and watched as long again."""
+"""Every tenth end state is watched this much longer, acknowledged, and watched for the same time again."""
 EVERY = 10
 JUDGED = frozenset((Expected.TRIP, Expected.STOP, Expected.HOLD))
-"""What has a budget."""
+"""Events with a budget."""
 HEARTBEAT_S = 0.25
-"""A drive misses our heartbeat after 200 ms, and we sent the last one up to 50 ms before a kill."""
+"""A drive detects a missing heartbeat after 200 ms, and the last one left up to 50 ms before a kill."""
 
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """A recipe, a tick of it, the place it is at, and the faults that begin there, as a script has them."""
+    """A recipe, a tick of it, its place, and the faults that begin there, as in a script."""
 
     recipe: str
     tick: int
@@ -48,10 +49,10 @@ class Case:
 
 @dataclass(slots=True)
 class Verdict:
-    """What has come of a case: failures (empty: safe and in time), who tripped, how long it took.
+    """The verdict on a case: failures (empty: safe and in time), what tripped, how long it took.
 
-    ``missing`` is what the safe state lacked in the end. ``exposed``: every fault with a budget could be noticed at
-    some time; ``stayed``: the end state was watched on, and acknowledged.
+    ``missing``: what the safe state lacked at the end. ``exposed``: every fault with a budget could be noticed at some
+    time; ``stayed``: the end state was watched for longer, and acknowledged.
     """
 
     case: Case
@@ -65,7 +66,7 @@ class Verdict:
 
     @property
     def only_force(self) -> bool:
-        """Nothing is wrong but that the load stayed on: in time, no harm, no invariant broken, all else safe."""
+        """The only failure is that the load stayed on: in time, no harm, no invariant broken, all else safe."""
         return len(self.failures) == 1 and [text.partition(" ")[0] for text in self.missing] == ["force"]
 
 
@@ -75,12 +76,12 @@ def fault_of(text: str, recipe: str = "") -> Injection:
 
 
 def connecting(kind: FaultKind) -> bool:
-    """Tell whether only the next connection can notice a fault."""
+    """Return whether only the next connection can detect a fault."""
     return kind.exposure.name == "CONNECTING"
 
 
 def _watched_s(stage: Stage, kinds: tuple[FaultKind, ...]) -> float:
-    """Return how long a case is watched that does not end, s."""
+    """Return how long an unending case is watched, s."""
     if any(kind.slow for kind in kinds):
         return SLOW_S
     if stage.run.engine.scans > 0 and all(map(connecting, kinds)):
@@ -94,7 +95,7 @@ class Judge:
     def __init__(self, stage: Stage, case: Case, *, budgets: bool = True, watched_s: float | None = None) -> None:
         """Begin the faults at the stage's next tick; without ``budgets`` only safety is judged.
 
-        ``watched_s``: how long a case is watched that ends nothing, s of rig time, if not as its faults say.
+        ``watched_s``: how long a case without an end is watched, s of rig time; by default, what its faults need.
         """
         self.stage = stage
         self.budgets = budgets
@@ -120,7 +121,7 @@ class Judge:
         self.until_s = self.onset_s + (_watched_s(stage, self.kinds) if watched_s is None else watched_s)
 
     def run(self) -> Verdict:
-        """Tick until it is clear what has come of it."""
+        """Tick until the verdict is clear."""
         stage = self.stage
         while not self._done(stage.tick()):
             pass
@@ -162,7 +163,7 @@ class Judge:
         self.committed = self.stage.ledger.committed
         normal = self.stage.run.engine.executor.finished
         if not normal:
-            self._unexposed.clear()  # it was noticed: nothing else ends a run
+            self._unexposed.clear()  # detected: nothing else ends a run
         rides = [kind.phrase for kind in self.kinds if kind.reaction is Expected.RIDE]
         if self.budgets and len(rides) == len(self.kinds) and not normal and self._was_running:
             self.verdict.failures.append(f"ended by a fault it should ride through{self._why()}")
@@ -184,7 +185,7 @@ class Judge:
         return ""
 
     def _safe(self, now: float) -> bool:
-        """See that the end state is reached in time and stays."""
+        """Check that the end state is reached in time and lasts."""
         stage = self.stage
         missing = self._missing()
         if stage.ledger.committed > self.committed and stage.ledger.trips:
@@ -203,10 +204,10 @@ class Judge:
         return False
 
     def _after(self, now: float) -> bool:
-        """See that an end state lasts, and that nothing comes of acknowledging it."""
+        """Check that an end state lasts, and that acknowledging it has no effect."""
         missing = self._missing()
         if missing and self._stops_anew(now):
-            return False  # a creeping wheel is tripped by something else now
+            return False  # something else trips the creeping wheel now
         if missing:
             when = "acknowledged" if self._acknowledged else "at rest"
             self.verdict.failures.append(f"safe no more, {when}: {', '.join(missing)}{self._why()}")
@@ -221,14 +222,14 @@ class Judge:
         return False
 
     def _stops_anew(self, now: float) -> bool:
-        """Tell whether another stop has begun, and has its time still."""
+        """Return whether another stop has begun and still has time."""
         return self.stage.mode in ("stopping", "fast stop") and now - self.stage.mode_since_s <= SAFE_S
 
     def _missing(self) -> list[str]:
         return self.stage.missing(self.kinds)
 
     def _at_rest(self, now: float) -> bool:
-        """Tell whether control is through with stopping, or has had long enough."""
+        """Return whether control has finished stopping, or has used up its time."""
         stage = self.stage
         settled = stage.run.finished or stage.faulty.killed or stage.mode in ("latched", "idle", "cooldown")
         return settled or now - self.ended_s > LATCHED_S

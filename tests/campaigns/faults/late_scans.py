@@ -1,7 +1,7 @@
-"""Late scans on a rig whose drives do not mind: control alone has to notice, and to say so.
+"""Late scans on a rig whose drives tolerate them: control alone must detect and report them.
 
-The drives' own watchdogs are as quick as the limit for late scans, and act first in most cases. Here they are left out,
-and a scan that comes later than it may has to trip with itself as the first cause.
+The drives' own watchdogs are as quick as the limit for late scans, and mostly act first. Here they are disabled, and a
+late scan must itself be the first cause of the trip.
 """
 
 from __future__ import annotations

@@ -1,4 +1,4 @@
-"""The campaign at the limits: every fault at the corners of what the rig may be asked for.
+"""The campaign at the limits: every fault at the corners of the rig's range.
 
 First each corner runs without a fault: no trip, every row measured, no harm. Then faults begin in it, at begin, middle
 and end of heating, pre-grinding, soak, repeat and lift.
@@ -30,7 +30,7 @@ WIDTHS = (38, 5, 8, 7, 7, 6, 5, 8, 9, 10, 8)
 
 @dataclass(frozen=True, slots=True)
 class Fine:
-    """A corner without a fault: what came of it, and its moments."""
+    """A corner without a fault: its result, and its moments."""
 
     corner: Corner
     moments: tuple[Moment, ...]
@@ -86,7 +86,7 @@ def line(cells: Sequence[str]) -> str:
 
 
 def faults() -> list[str]:
-    """Return every fault that is tried: those of the catalogue, and with a range both ways, half of it."""
+    """Return every fault to try: those of the catalogue, and those with a range at half of it in both directions."""
     single = [name for name in faults_of_campaign(everything=False) if name not in PARAMETRIC]
     signs = [row.text(row.between(end, 0.5)) for row in PARAMETRIC.values() for end in row.ends]
     return single + signs

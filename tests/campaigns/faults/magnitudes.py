@@ -1,8 +1,8 @@
-"""Every fault with a magnitude, searched in it: the greatest that nothing notices, and what that one does.
+"""Searches the magnitude of every fault that has one: the greatest magnitude that nothing detects, and its effect.
 
 Of each fault and sign the worst place is found first (corner and step in which a moderate magnitude comes nearest to
-harm), then there, by bisection, the magnitude from which something notices it. Unnoticed is what neither trips nor ends
-the run while it is watched. What harms, noticed or not, has to stand in the written table of what hardware must hold.
+harm), then there, by bisection, the smallest detected magnitude. Undetected means: neither trips nor ends the run while
+it is watched. Every harmful magnitude, detected or not, must be in the written table of what hardware must prevent.
 """
 
 from __future__ import annotations
@@ -24,11 +24,12 @@ from tests.campaigns.faults.stage import Stage
 from tests.campaigns.faults.wheel_harm import CONTACT_C, FORCE_N, HUB_C, POWER_W, STANDING_J
 
 WRITTEN = Path(__file__).resolve().parents[3] / "docs" / "hardware-magnitudes.csv"
-"""Magnitudes that harm unseen, with the device that must hold; docs/kinds/wheel-on-belt.md shows the table."""
+"""Undetected harmful magnitudes, with the device that must prevent harm; docs/kinds/wheel-on-belt.md shows the
+table."""
 CORNERS = ("1#, stiffness -25%, friction heat +30%", "3#, stiffness +30%, friction heat +30%")
-"""Corners that places are looked for in: the softest and the stiffest rubber, least and most friction."""
+"""Corners searched for places: the softest and the stiffest rubber, least and most friction."""
 UNLIKE = {CORNERS[0]: ("sim.thermal.hub_capacity=399 J/K",), CORNERS[1]: ("sim.thermal.hub_capacity=441 J/K",)}
-"""What the twin's heat has besides that the rig file does not believe: a hub of 5 % less, and of 5 % more capacity."""
+"""Further differences between the twin's heat and the rig file: a hub of 5 % less, and of 5 % more capacity."""
 STEPS = 6
 """Halvings of the range: magnitudes are known to a 64th of it."""
 MODERATE = 0.25
@@ -41,14 +42,15 @@ _PLACES = {
 }
 """Phases and parts of them in which faults begin: of the machine's assembly, of what needs load, of temperatures."""
 STOPPING, FINISHED = "-> stopping: ", "recipe finished"
-"""What the journal says of a stop, and of the one that ends a recipe."""
+"""Journal entries of a stop, and of the stop that ends a recipe."""
 _WATCHED_S = {ASSEMBLED: 120.0, LOADED: 150.0, HOT: 900.0}
 """How long they are watched, s of rig time: through pre-grinding; a soak under load; heating and the first bursts."""
 
 
 @dataclass(frozen=True, slots=True)
 class Trial:
-    """One magnitude at one place: who noticed ("" nobody), the harm, and the greatest figures after the onset."""
+    """One magnitude at one place: what detected it ("" for nothing), the harm, and the greatest figures after the
+    onset."""
 
     value: float
     noticed: str
@@ -63,13 +65,13 @@ class Trial:
 
     @property
     def danger(self) -> float:
-        """How near to harm it came: 1 and more is harm, but for slip power that was short."""
+        """How near to harm it came: 1 and more is harm, except for brief slip power."""
         return max(self.force_n / FORCE_N, self.hub_c / HUB_C, self.contact_c / CONTACT_C, self.power_w / POWER_W,
                    self.standing_j / STANDING_J)  # fmt: skip
 
     @property
     def does(self) -> str:
-        """What it does, in figures."""
+        """Its effect, in figures."""
         return (
             f"{self.force_n:.0f} N, hub {self.hub_c:.0f} degC, contact {self.contact_c:.0f} degC, slip x force"
             f" {self.power_w:.0f} W, standing {self.standing_j:.0f} J"
@@ -127,7 +129,7 @@ class Order:
 
 @cache
 def places(corner: str) -> dict[tuple[str, str], Callable[[Order], Trial]]:
-    """Return what tries faults, for each place of a corner."""
+    """Return a function that tries faults, for each place of a corner."""
     wanted = {place for places in _PLACES.values() for place in places}
     found: dict[tuple[str, str], Callable[[Order], Trial]] = {}
     by_moment: dict[Moment, tuple[str, str]] = {}
@@ -146,7 +148,7 @@ def places(corner: str) -> dict[tuple[str, str], Callable[[Order], Trial]]:
 
 
 def history(rehearsed: Stage) -> KnownRatio:
-    """Return what a rig knows after three heatings like those of a run: it is faulty after a life without a fault."""
+    """Return a rig's knowledge after three heatings like those of a run: the fault comes after a life without one."""
     rig = rehearsed.run.engine.ctx.rig
     return known_from(FIRST * ratios_of(rehearsed.ledger.heatings, rig), rig)
 
@@ -174,7 +176,7 @@ def tried(stage: Stage, moment: Moment, order: Order) -> Trial:
 
 
 def search(row: Parametric, end: float) -> Found:
-    """Find the worst place of a fault to one side, then the greatest magnitude there that nothing notices."""
+    """Find the worst place of a fault to one side, then the greatest magnitude there that nothing detects."""
     kind = kind_of_place(row.kind.phrase)
     trials: list[Trial] = []
     here = [(corner, place) for corner in CORNERS for place in _PLACES[kind] if place in places(corner)]
@@ -224,7 +226,7 @@ def conduct(jobs: int = 1, only: str = "") -> Iterable[Found]:
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A row of the written table: magnitudes ``least`` to ``most`` of a fault that hardware must hold."""
+    """A row of the written table: magnitudes ``least`` to ``most`` of a fault that hardware must prevent."""
 
     fault: str
     least: float
@@ -234,7 +236,7 @@ class Written:
     device: str
     why: str
     only: str = ""
-    """The rigs that it holds for; "" is a rig with a history of heatings, which is what a search has."""
+    """The rigs it applies to; "" is a rig with a history of heatings, as in a search."""
 
     @property
     def range(self) -> str:
@@ -243,7 +245,7 @@ class Written:
         return f"{words}, {self.only}" if self.only else words
 
     def covers(self, found: Found) -> bool:
-        """Tell whether every magnitude that harms is in this row."""
+        """Return whether every harmful magnitude is in this row."""
         mine = bool(found.harmed) and found.row.kind.phrase == self.fault and not self.only
         return mine and all(self.least <= trial.value <= self.most for trial in found.harmed)
 

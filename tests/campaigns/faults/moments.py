@@ -17,12 +17,12 @@ Order = TypeVar("Order")
 Result = TypeVar("Result")
 PHASES = ("begin", "middle", "end")
 WARM_S = 10.0
-"""So much of a cool-down is seen where it is not waited for, s."""
+"""Observed part of a cool-down if its end is not awaited, s."""
 
 
 @dataclass(frozen=True, slots=True)
 class Moment:
-    """A tick of a recipe's run, and what is going on there."""
+    """A tick of a recipe's run, and what happens there."""
 
     recipe: str
     tick: int
@@ -31,7 +31,7 @@ class Moment:
 
     @property
     def place(self) -> str:
-        """In words."""
+        """As text."""
         return f"{self.step}, {self.phase}"
 
 
@@ -97,7 +97,7 @@ def visit(
     recipe: str, moments: Iterable[Moment], look: Callable[[Moment, Twins], None], overrides: tuple[str, ...] = (),
     heat: KnownRatio = NO_HISTORY, believed: tuple[str, ...] = (),
 ) -> None:
-    """Run a recipe once and show, before each of the moments' ticks, what does work with twins of its stage."""
+    """Run a recipe once and yield, before each of the moments' ticks, an object that works with twins of its stage."""
     stage = stage_of(recipe, overrides, heat, believed)
     for moment in sorted(moments, key=_tick):
         while stage.ticks < moment.tick:
@@ -107,9 +107,8 @@ def visit(
 
 @dataclass(frozen=True, slots=True)
 class Twins:
-    """Lets work be done with a stage and leaves it as it was.
-
-    Without forks it is done with a copy or, where the stage cannot be copied, with a run of its own up to there.
+    """Lets work be done with a stage and leaves it unchanged. Without forks it uses a copy or, if the stage cannot be
+    copied, a run of its own up to there.
     """
 
     stage: Stage
@@ -119,13 +118,13 @@ class Twins:
     believed: tuple[str, ...] = ()
 
     def do(self, work: Callable[[Stage], Result]) -> Result:
-        """Return what work makes of a twin. Raises ApartError."""
+        """Return the result of work on a twin. Raises ApartError."""
         if FORKS:
             return apart(lambda: work(self.stage))
         return work(self.copy())
 
     def stay(self, work: Callable[[Stage, Order], Result]) -> Callable[[Order], Result]:
-        """Return what does each order with a twin of its own, now and later. Raises ApartError."""
+        """Return a function that executes each order on a twin of its own, now and later. Raises ApartError."""
         if FORKS:
             post: Post[Order, Result] = Post(lambda order: work(self.stage, order))
             return post.do

@@ -1,10 +1,10 @@
-"""Seeded bugs of the control code: does the campaign notice them?
+"""Seeded bugs of the control code: does the campaign detect them?
 
 Each mutant is put into a copy of the source tree, never into the tree itself, and hunted there by a process of its own
 (``--probe``): the recipes must still run to their end, the sample campaign and the stateful test must find nothing,
-every row of the interlock table must be the first cause of its faults, and a wheel's first contact must tell what
-turns wrongly. What notices anything has killed the mutant. Beside the bugs by hand each row is masked. The unchanged
-copy is hunted first and must pass.
+every row of the interlock table must be the first cause of its faults, and a wheel's first contact must detect what
+turns wrongly. Any check that detects something kills the mutant. Besides the bugs written by hand, each row is masked.
+The unchanged copy is checked first and must pass.
 """
 
 from __future__ import annotations
@@ -140,7 +140,7 @@ BY_HAND: tuple[Mutant, ...] = (
            "SpeedSweep(slow, share * slow + creep), SpeedSweep(fast, share * fast + creep),",
            "SpeedSweep(slow, share * slow + creep),"),
 )  # fmt: skip
-"""Bugs by hand; each row of the interlock table that is the first cause of something is masked besides."""
+"""Bugs by hand; in addition, each row of the interlock table that is the first cause of something is masked."""
 
 MASKED = tuple(_masked(name) for name in dict.fromkeys(row.interlock for row in FIRST))
 TRACK = "specimen_on_track"
@@ -179,7 +179,7 @@ def copy_tree(to: Path) -> None:
 
 
 def apply(mutant: Mutant, tree: Path) -> None:
-    """Put a mutant into a copy. Raises ValueError when its text is not there exactly once."""
+    """Put a mutant into a copy. Raises ValueError unless its text is there exactly once."""
     path = tree / mutant.path
     text = path.read_text(encoding="utf-8")
     if text.count(mutant.old) != 1:
@@ -190,7 +190,7 @@ def apply(mutant: Mutant, tree: Path) -> None:
 def hunt(mutant: Mutant | None, kind: str = "wheel_on_belt") -> tuple[str, str]:
     """Hunt a mutant, or the unchanged tree with a kind's campaign, in a copy.
 
-    Return its name and what noticed it ("" if nothing).
+    Return its name and what detected it ("" if nothing).
     """
     with TemporaryDirectory() as folder:
         tree = Path(folder)
@@ -210,7 +210,7 @@ def hunt(mutant: Mutant | None, kind: str = "wheel_on_belt") -> tuple[str, str]:
 def probe(row: str = "", kind: str = "wheel_on_belt") -> str:
     """Return what is wrong with the tree this runs in, "" if nothing is found.
 
-    An interlock's faults are tried first where one is given, else what is quick.
+    If an interlock is given its faults are tried first, otherwise the quick checks.
     """
     from tests.campaigns.faults.recipes import GRID
 
@@ -229,7 +229,7 @@ def probe(row: str = "", kind: str = "wheel_on_belt") -> str:
 
 
 def _after_trip(kind: str) -> str:
-    """See that after trips every axis loses its power."""
+    """Check that every axis loses its power after trips."""
     from tests.campaigns.aftertrip import SAMPLE, judged
 
     with redirect_stdout(StringIO()) as said:
@@ -238,7 +238,7 @@ def _after_trip(kind: str) -> str:
 
 
 def _rows(only: str = "", kind: str = "wheel_on_belt") -> str:
-    """See that rows of the interlock table are the first cause of their faults."""
+    """Check that rows of the interlock table are the first cause of their faults."""
     from tests.campaigns.faults.first_up import conduct
 
     rows = [row for row in (TRACK_FIRST if kind == TRACK else FIRST) if only in ("", row.interlock)]
@@ -279,7 +279,7 @@ def _late() -> str:
 
 
 def _first_contact() -> str:
-    """See that what turns wrongly ends the run at a wheel's first contact, and at a load that a hand can hold."""
+    """Check that a wrong rotation ends the run at a wheel's first contact, and at a load that a hand can hold."""
     with redirect_stdout(StringIO()) as said:
         code = pytest.main(["-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--no-header", FIRST_CONTACT])
     failed = [line for line in said.getvalue().splitlines() if line.startswith(("FAILED", "ERROR"))]

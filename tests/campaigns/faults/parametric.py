@@ -12,11 +12,11 @@ ASSEMBLY = (
     "wheel drive reversed", "belt drive reversed", "wheel speed", "belt speed", "wheel and belt drives swapped",
     "wheel diameter",
 )  # fmt: skip
-"""Beginnings of the phrases of assembly faults of the machine: none of them begins in a run."""
+"""Beginnings of the phrases of assembly faults of the machine: none begins during a run."""
 _LAGS = {"load cell": 4.0, "thermometer": 6.0, "hub sensor": 40.0}
 """Greatest time constant, or delay, of a sensor in a search, s."""
 _OF_SHARES = {" gain": (60.0, 140.0, 100.0), " offset": (-30.0, 30.0, 0.0), " drift": (-10.0, 10.0, 0.0)}
-"""Ranges of what fails together, by the end of the phrase: percent of the reading, of the span, of it in a minute."""
+"""Ranges of common failures, by the end of the phrase: percent of the reading, of the span, of the span in a minute."""
 
 
 @dataclass(frozen=True, slots=True)

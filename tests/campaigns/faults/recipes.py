@@ -1,4 +1,4 @@
-"""The recipes of the campaign: short ones that pass through every step there is."""
+"""The recipes of the campaign: short ones that cover every step."""
 
 from __future__ import annotations
 
@@ -87,13 +87,13 @@ grids:
     temperature: 25 degC
     both_directions: true
 """
-"""Both directions of slip: the belt slower than the wheel, then faster, near the greatest speed it is let through."""
+"""Both directions of slip: the belt slower than the wheel, then faster, near its greatest accepted speed."""
 
 GRID = ("quick", "sideslip", "heated", "reversed")
 """The recipes of the campaign."""
 
 RECIPES = {"quick": QUICK, "sideslip": SIDESLIP, "heated": HEATED, "reversed": REVERSED, "short": SHORT}
-"""``short`` is the recipe that is stopped and killed at its every scan."""
+"""``short`` is the recipe that is stopped and killed at every scan."""
 
 
 class TrackRecipe(NamedTuple):
@@ -136,19 +136,19 @@ grids:
 
 
 class Setting(NamedTuple):
-    """A recipe's text, and what of the rig is other than packaged."""
+    """A recipe's text, and the rig's differences from the packaged one."""
 
     text: str
     overrides: tuple[str, ...] = ()
 
 
 def language_of(recipe: str) -> FaultLanguage:
-    """Return the language of the faults of a recipe's machine, with those of the shares of its rig file."""
+    """Return the fault language of a recipe's machine, including faults with shares from its rig file."""
     return _language(TRACKS[recipe].rig if recipe in TRACKS else "sim")
 
 
 def has(recipe: str, fault: str) -> bool:
-    """Tell whether the kind of machine of a recipe knows a fault, with a magnitude or without."""
+    """Return whether the kind of machine of a recipe knows a fault, with or without a magnitude."""
     return any(fault == phrase or fault.startswith(f"{phrase} ") for phrase in language_of(recipe).catalogue)
 
 

@@ -44,7 +44,7 @@ def conduct(second: tuple[str, ...] = SECOND) -> Tally:
 
 
 def cooling(stage: Stage) -> Stage:
-    """Stop a stage, and let it come to its cool-down. Raises RuntimeError where there is none."""
+    """Stop a stage, and run it to its cool-down. Raises RuntimeError if there is none."""
     stage.inject(Injection(FaultTime(at_s=stage.next_s), CATALOGUE[FIRST]))
     until_s = stage.next_s + GIVEN_UP_S
     while stage.next_s < until_s:

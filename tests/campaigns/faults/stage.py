@@ -1,4 +1,4 @@
-"""One run on a rig that can be faulty, ticked by hand and copied in the middle."""
+"""One run on a rig that can have faults, ticked by hand and copied in the middle."""
 
 from __future__ import annotations
 
@@ -38,25 +38,25 @@ RUNNING = frozenset({"armed", "run", "hold"})
 STANDING = frozenset({"idle", "latched"})
 EMERGENCY = "emergency stop mirrored"
 AT_REST_S = 0.3
-"""A rig that has latched may take this long to be at rest in every axis: a yaw axis comes down from 20 deg/s
-in 0.25 s on the ramp of its drive, which is disabled with the latching."""
+"""After latching, a rig may take this long to be at rest in every axis: a yaw axis stops from 20 deg/s in 0.25 s on the
+ramp of its drive, which latching disables."""
 EMERGENCY_REST_S = 3.0
-"""A mirrored emergency stop begins with the drives at speed: I5 gives them this long."""
+"""A mirrored emergency stop begins with the drives at speed: I5 allows them this time."""
 
 Place = tuple[int, str]
 """Where a run is: the number of the plan's step (0 while connecting) and its phase in one word."""
 
 
 class Exposing(Protocol):
-    """Tells of one fault, from its onset on, whether it can be noticed."""
+    """Judges from the onset of a fault whether it can be noticed."""
 
     def now(self) -> bool:
-        """Tell whether it can be noticed now."""
+        """Return whether it can be noticed now."""
         ...
 
 
 class Ledger(NullRecorder):
-    """Counts what a run would have written down."""
+    """Counts what a run would have recorded."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -69,7 +69,7 @@ class Ledger(NullRecorder):
     def commit_repeat(
         self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
     ) -> Ticket:
-        """Count a repeat that was committed for good."""
+        """Count a committed repeat."""
         if result.status is not RepeatStatus.VOID:
             self.committed += 1
         return Ticket(done=True)
@@ -82,7 +82,7 @@ class Ledger(NullRecorder):
         return len(self.trips)
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
-        """Note what changes the state."""
+        """Record what changes the state."""
         if kind in ("mode", "trip"):
             self.journal.append(text)
         elif kind == "warning":
@@ -93,7 +93,7 @@ class Ledger(NullRecorder):
 
 @cache
 def rig_of(overrides: tuple[str, ...]) -> RigConfig:
-    """Return the simulated rig with overrides; without its standstill relay, so that the program alone is judged."""
+    """Return the simulated rig with overrides; without its standstill relay, so that only the program is judged."""
     overrides = ("sim.standstill_relay=false", *overrides)
     return load_rig("sim", overrides, accept_risk="what a rig does without one of its watches")
 
@@ -111,7 +111,7 @@ class Stage:
         self, text: str, overrides: Iterable[str] = (), seed: int = 0, heat: KnownRatio = NO_HISTORY,
         believed: tuple[str, ...] = (),
     ) -> None:  # fmt: skip
-        """Build everything; nothing is sent before the first ``tick``. ``heat``: what the rig's history says.
+        """Build everything; nothing is sent before the first ``tick``. ``heat``: the rig's history.
 
         ``believed``: further overrides of the rig file that control has; the machine is without them.
         """
@@ -128,7 +128,7 @@ class Stage:
         self.observer: Any = HarmObserver(rig, planned)
         self.invariants: Any = Invariants()
         self.hub_most_c = rig.plant.heat.hub_c
-        """The highest setpoint that the jacket's controller ever heated to, at first the hub as it is found, degC."""
+        """The highest setpoint of the jacket's controller so far; initially the hub's temperature, degC."""
         self.begin(config)
 
     def begin(self, config: object) -> None:
@@ -139,12 +139,12 @@ class Stage:
         self.mode = ""
         self.mode_since_s = 0.0
         self.trip = ""
-        """The first cause of a trip; an acknowledgement takes it from control, not from here."""
+        """The first cause of a trip; an acknowledgement clears it in control, not here."""
         self._step = 0
         self.step_since_s = 0.0
-        """Since when the plan's present step is worked off."""
+        """When the plan's present step began."""
         self.all_on = False
-        """Every drive has been energised since they were last all off: what is missing now has dropped out."""
+        """Every drive was energised since they were last all off: one without power now has dropped out."""
         self._shared: tuple[object, ...] = (config, self.plan)
 
     def copy(self) -> Stage:
@@ -152,12 +152,12 @@ class Stage:
         return deepcopy(self, {id(one): one for one in self._shared})
 
     def inject(self, *injections: Injection) -> None:
-        """Let faults happen as their times say."""
+        """Schedule faults by their times."""
         self.faulty.script.add(injections)
 
     @property
     def copyable(self) -> bool:
-        """Nothing is being said to a drive outside the scan: such a conversation is a generator."""
+        """No drive is addressed outside the scan: such a conversation is a generator."""
         devices = self.run.engine.devices
         return not any(devices.master.busy(drive) for drive in devices.drives)
 
@@ -172,22 +172,22 @@ class Stage:
 
     @property
     def running(self) -> bool:
-        """The recipe is being worked off, or held; not yet while connecting."""
+        """The recipe is running, or held; not yet while connecting."""
         return self.mode in RUNNING
 
     @property
     def ended(self) -> bool:
-        """The recipe will not go on: stopped, tripped, finished or never begun."""
+        """The recipe will not continue: stopped, tripped, finished or never begun."""
         run = self.run
         return run.finished or run.connector.failed or (run.engine.scans > 0 and self.mode not in RUNNING)
 
     def tick(self) -> float:
-        """Let the rig live until the next tick and do it; return its time, s. A run that has ended does nothing."""
+        """Advance the rig to the next tick and do it; return its time, s. A run that has ended does nothing."""
         now = self.next_s
         faulty = self.faulty
         faulty.advance(now)
         if self.run.finished:
-            # Nobody takes frames off the wire any more, however urgent they are.
+            # Frames on the wire are no longer received, however urgent they are.
             self.next_s = next_tick(now, now + RIG_STEP_S, faulty.script.due_s)
         else:
             self.next_s = next_tick(now, faulty.tick(now), faulty.urgent_s)
@@ -204,7 +204,7 @@ class Stage:
         return now
 
     def _note(self, now: float) -> None:
-        """Note of the rig itself, and of the plan, what exposures ask for."""
+        """Record the data of the rig and the plan that exposures need."""
         step = self.run.engine.ctx.progress.step
         if step != self._step:
             self._step, self.step_since_s = step, now
@@ -212,22 +212,22 @@ class Stage:
         self.all_on = all(on) or (self.all_on and any(on))
         self.note_of_kind()
 
-    # -- what is a kind's own; this is a wheel on a belt ------------------------------------------------------
+    # -- specific to the kind; here a wheel on a belt ------------------------------------------------------
 
     def note_of_kind(self) -> None:
-        """Note of the machine what exposures ask for."""
+        """Record the machine's data that exposures need."""
         jacket = self.rig.jacket
         if jacket.running and jacket.setpoint_c > self.hub_most_c:
             self.hub_most_c = jacket.setpoint_c
 
     def exposed(self, kind: FaultKind) -> Exposing:
-        """Begin to tell whether a fault can be noticed."""
+        """Begin to judge whether a fault can be noticed."""
         from tests.campaigns.faults.exposure import Exposed
 
         return Exposed(self, kind)
 
     def missing(self, kinds: tuple[FaultKind, ...]) -> list[str]:
-        """Return what is missing to the safe state under these faults."""
+        """Return what the safe state lacks under these faults."""
         return Truth.of(self.rig).unsafe(
             creeping=self.mode == "cooldown",
             force_stays=any(kind.force_stays for kind in kinds),

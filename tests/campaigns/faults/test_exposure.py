@@ -1,4 +1,4 @@
-"""Whether a fault can be noticed is told from the rig and the plan, whatever control believes."""
+"""Exposure of a fault depends on the rig and the plan, never on control's beliefs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Whatever is pulled out of a running machine: the first alarm names it."""
+"""The first alarm names whatever was pulled out of a running machine."""
 
 from __future__ import annotations
 

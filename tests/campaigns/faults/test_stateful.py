@@ -82,7 +82,7 @@ class AnythingHappens(RuleBasedStateMachine):
 
     @rule(fast=st.booleans())
     def stop(self, fast: bool) -> None:
-        """Stop, again and again if it likes (I7)."""
+        """Stop, possibly repeatedly (I7)."""
         self.stage.run.request_stop("stateful", fast=fast)
 
     @rule()
@@ -92,7 +92,7 @@ class AnythingHappens(RuleBasedStateMachine):
 
     @rule(name=st.sampled_from(("safety chain opened", "belt drive fault", "press drive in local mode")))
     def acknowledge_too_early(self, name: str) -> None:
-        """Acknowledge while the cause is still there: nothing must come of it (I6)."""
+        """Acknowledge while the cause is still there: this must have no effect (I6)."""
         stage = self.stage
         now = stage.next_s
         if now < self.faulty_until_s or not stage.running:
@@ -116,7 +116,7 @@ class AnythingHappens(RuleBasedStateMachine):
             assert not self.stage.observer.found
 
     def _watch(self, now: float) -> None:
-        """See that every end of a run is safe in time (I5)."""
+        """Check that every end of a run is safe in time (I5)."""
         stage = self.stage
         if stage.mode in RUNNING or not stage.run.engine.scans:
             self.stopped_s = float("inf")

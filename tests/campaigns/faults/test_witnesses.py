@@ -1,4 +1,4 @@
-"""Second witnesses of the force at 400 N: whatever the load cell says, nothing presses past 500 N."""
+"""Second witnesses of the force at 400 N: with any load cell reading, nothing presses beyond 500 N."""
 
 from __future__ import annotations
 

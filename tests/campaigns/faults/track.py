@@ -33,11 +33,11 @@ from tests.tester.inputs.recipe.texts import load_recipe
 WORKING = frozenset({"run", "hold"})
 AT_REST = frozenset({"idle", "latched"})
 MOVES_SHARE = 2e-5
-"""A track faster than this share of its drive's greatest speed is meant to move: 0.2 um/s, 0.04 mm/s."""
+"""A track faster than this share of its drive's greatest speed moves intentionally: 0.2 um/s, 0.04 mm/s."""
 ASTRAY_SHARE = 0.3
 """Off its command by more than this share, a track does not follow it: ``interlocks.speed_share``."""
 SLID_MM = 1.2
-"""After this way under load rubber slides: the arm's spring is drawn."""
+"""After this distance under load rubber slides: the arm's spring is drawn."""
 TOUCHED_N = 0.1
 """Rubber under load has more friction: 10 N at 0.02."""
 NEAR_MM = 20.0
@@ -45,14 +45,14 @@ NEAR_MM = 20.0
 
 
 class TrackLedger(Ledger):
-    """Notes when the cell was tared, too: only then the track may move with the arm down."""
+    """Also records when the cell was tared: only then the track may move with the arm down."""
 
     def __init__(self) -> None:
         super().__init__()
         self.tared = False
 
     def tare(self, t_s: float, kind: str, values: tuple[float, float, float, float], repeat_key: int = 0) -> None:
-        """Note a tare."""
+        """Record a tare."""
         self.tared = True
 
 
@@ -90,20 +90,20 @@ class TrackStage(Stage):
         self.begin(config)
 
     def note_of_kind(self) -> None:
-        """Note that the cell was tared."""
+        """Record that the cell was tared."""
         self.observer.tared = self.tares.tared
 
     def exposed(self, kind: FaultKind) -> TrackExposed:
-        """Begin to tell whether a fault can be noticed."""
+        """Begin to judge whether a fault can be noticed."""
         return TrackExposed(self, kind)
 
     def missing(self, kinds: tuple[FaultKind, ...]) -> list[str]:
-        """Return what is missing to the safe state."""
+        """Return what the safe state lacks."""
         return TrackTruth.of(self.rig).unsafe(self.observer.still_m_s)
 
 
 class TrackExposed:
-    """Tells of one fault, from its onset on, whether it can be noticed: from the plant, the devices and the plan."""
+    """Judges from the onset of a fault whether it can be noticed: from the plant, the devices and the plan."""
 
     def __init__(self, stage: TrackStage, kind: FaultKind) -> None:
         """Begin at the onset."""
@@ -114,7 +114,7 @@ class TrackExposed:
         self._from_m = stage.rig.plant.slid_m
 
     def now(self) -> bool:
-        """Tell whether the fault can be noticed now."""
+        """Return whether the fault can be noticed now."""
         stage, exposure = self.stage, self.kind.exposure
         scans = stage.run.engine.scans
         if exposure is Exposure.ALWAYS:
@@ -168,7 +168,7 @@ class TrackInvariants:
         """Look at the commands of the last scan, if there was a new one."""
         engine = stage.run.engine
         if engine.scans == self._scans or engine.control.state.events:
-            return  # events that wait: something was asked for after the scan, the next one acts on it
+            return  # pending events: requested after the scan, the next scan acts on them
         self._scans = engine.scans
         state = engine.control.state
         mode, out, r, demand = state.mode.value, state.setpoints, engine.ctx.readings, engine.ctx.demand
@@ -214,7 +214,7 @@ FAULTS = tuple(dict.fromkeys(fault for recipe in GRID for fault in language_of(r
 
 
 def fits(recipe: str, fault: str) -> bool:
-    """Tell whether the rig of a recipe has what a fault is of."""
+    """Return whether the rig of a recipe has the part that a fault affects."""
     if not has(recipe, fault):
         return False
     rig = track_rig_of(TRACKS[recipe].rig, TRACKS[recipe].overrides)
@@ -231,10 +231,10 @@ DISC, WET = ("disc", "slide"), ("wet road", "slide")
 """(recipe, phase)."""
 UNWATCHED = "interlocks.speed_share=1"
 DULL = "interlocks.speed_floor=0.9"
-"""The track's way is not watched."""
+"""The track's travel is not monitored."""
 PATIENT = ("can.consumer_heartbeat=600 ms", "axes.track.rpdo_deadline=600 ms", "axes.lift.rpdo_deadline=600 ms",
            "arming.watchdog_proof=false")  # fmt: skip
-"""The drives wait so long for us that a late scan is not first their fault."""
+"""The drives wait long enough that a late scan does not trip them first."""
 
 FIRST: tuple[First, ...] = (
     First("safety chain", ("t=0 s: safety chain opened",), SLIDE),
@@ -300,17 +300,17 @@ HARDWARE_MUST_HOLD: tuple[MustHold, ...] = (
              "end switches of the travel, in the emergency stop circuit",
              "it moves until its voltage is disabled, half a second after a stop that its data call ended"),
 )  # fmt: skip
-"""Pairs in which harm is possible whatever the software does."""
+"""Pairs that can do harm in spite of any software."""
 PAIRS = 1200
 
 
 def some_pairs(moments: Sequence[Moment], count: int) -> list[tuple[Moment, tuple[str, ...]]]:
-    """Return ``count`` pairs of faults that their moment's rig can have."""
+    """Return ``count`` pairs of faults that the rig can have at that moment."""
     drawn = pairs(moments, FAULTS, 3 * count)
     return [one for one in drawn if all(fits(one[0].recipe, fault) for fault in one[1])][:count]
 
 
 def left_out() -> list[str]:
-    """Return the rows that stand in neither list."""
+    """Return the rows that are in neither list."""
     known = {row.interlock for row in FIRST} | NEVER_FIRST.keys()
     return [name for name in ROWS if name not in known]

@@ -1,4 +1,4 @@
-"""Harm, as the plant sees it: an observer that looks at what is, never at what somebody measured or meant.
+"""Harm, as the plant sees it: an observer of the true state, never of measurements or intentions.
 
 All figures are [A].
 """
@@ -15,19 +15,19 @@ OVERLOAD: Final = 1.0
 """A force beyond this share of the cell's range strains it."""
 HOTTEST_C: Final = 110.0
 COLDEST_C: Final = -60.0
-"""Beyond these the chamber's air spoils specimen and cell; its own limiters stand by at 105 and -55 degC."""
+"""Beyond these the chamber's air spoils specimen and cell; its own limiters act at 105 and -55 degC."""
 STILL_SHARE: Final = 1e-3
-"""A track slower than this share of its drive's greatest speed stands."""
+"""A track slower than this share of its drive's greatest speed counts as standing."""
 LIFT_MM: Final = 0.2
-"""An arm that must stand has come down this far at most, mm."""
+"""An arm that must stand has come down at most this far, mm."""
 UNLOADED_N: Final = 0.5
 GROUND_M: Final = 1.0
-"""A bare holder has spoilt the track after this way under load, m: at 2 m/s that of half a second."""
+"""A bare holder has spoilt the track after this distance under load, m: half a second at 2 m/s."""
 
 
 @dataclass(slots=True)
 class TrackTruth:
-    """What of the rig's state harm is judged by, in plain numbers."""
+    """The part of the rig's state that determines harm, in plain numbers."""
 
     load_n: float
     force_n: float
@@ -41,10 +41,10 @@ class TrackTruth:
         return cls(plant.load_n, plant.force_n, rig.track_m_s, plant.air_c)
 
     def unsafe(self, still_m_s: float) -> list[str]:
-        """Return what is missing to the safe state: the track stands; empty when the rig is safe.
+        """Return what the safe state lacks: the track must stand; empty when the rig is safe.
 
-        A load that rests on a standing track is safe: dead weights go by hand, or with the lift once its drive has
-        power again.
+        A load that rests on a standing track is safe: dead weights come off by hand, or with the lift once its drive
+        has power again.
         """
         return [] if abs(self.track_m_s) < still_m_s else [f"track {self.track_m_s:.3g} m/s"]
 
@@ -65,7 +65,7 @@ class TrackHarmObserver:
 
     @property
     def still_m_s(self) -> float:
-        """A track slower than this stands, m/s."""
+        """A track slower than this counts as standing, m/s."""
         track = self.rig.axes["track"]
         return STILL_SHARE * track.config.max_speed * (1e-3 if track.config.unit == "mm/s" else 1.0)
 

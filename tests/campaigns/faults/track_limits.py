@@ -1,7 +1,7 @@
-"""The second kind at its limits: every fault at the corners of what a track may do, and magnitudes that harm there.
+"""The second kind at its limits: every fault at the corners of a track's range, and harmful magnitudes there.
 
 Each corner first runs without a fault: no trip, no harm, every condition measured. Then faults begin at its moments,
-those with a range at quarters of it to either side. What harms must stand in ``HARDWARE``.
+those with a range at quarters of it to either side. Harmful faults must be in ``HARDWARE``.
 """
 
 from __future__ import annotations
@@ -86,7 +86,7 @@ class Held:
     device: str
 
     def covers(self, verdict: Verdict) -> bool:
-        """Tell whether all that failed in a case is this harm."""
+        """Return whether this harm is a case's only failure."""
         return verdict.case.faults[0].startswith(self.phrase) and all(self.harm in text for text in verdict.failures)
 
 
@@ -94,11 +94,11 @@ HARDWARE = (
     Held("chamber sensor offset", "chamber beyond its range", "the chamber's own limiters, with sensors of their own"),
     Held("common ", "chamber beyond its range", "the chamber's own limiters, with sensors and a supply of their own"),
 )
-"""Single faults that the software does not hold."""
+"""Single faults whose harm the software does not prevent."""
 
 
 class Fine(NamedTuple):
-    """A corner without a fault: what came of it, what is wrong, and its moments."""
+    """A corner without a fault: its result, failures, and moments."""
 
     name: str
     outcome: str

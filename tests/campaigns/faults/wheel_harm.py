@@ -1,4 +1,4 @@
-"""Harm, as the plant sees it: an observer of what is, never of measurements or intentions.
+"""Harm, as the plant sees it: an observer of the true state, never of measurements or intentions.
 
 The figures are those of docs/kinds/wheel-on-belt.md [A].
 """
@@ -19,7 +19,7 @@ HUB_C = 155.0
 STANDING_J = 40.0
 """Heat of friction with one axis stopped under load while the other runs: it flat-spots the wheel."""
 COLD_STAND_S = 0.5
-"""So long the jacket may heat a wheel that stands."""
+"""The jacket may heat a standing wheel for this long."""
 UNLOADED_N = 5.0
 STILL_M_S = 0.01
 CREEP_M_S = 0.12
@@ -27,14 +27,14 @@ CREEP_M_S = 0.12
 SAFE_S = 3.0
 """From the trip, or the loss of control, to physically safe (I5)."""
 PRESS_MM = 1.0
-"""A press that must stand has come this far at most, mm [A]: half of its clearance."""
+"""A press that must stand has moved at most this far, mm [A]: half of its clearance."""
 _NUDGE = 0.01
-"""A yaw axis slower than this stands, deg/s."""
+"""A yaw axis slower than this counts as standing, deg/s."""
 
 
 @dataclass(slots=True)
 class Truth:
-    """What of the rig's state harm is judged by, in plain numbers."""
+    """The part of the rig's state that determines harm, in plain numbers."""
 
     force_n: float
     slip_m_s: float
@@ -49,7 +49,7 @@ class Truth:
         return cls(plant.force_z_n, plant.slip_m_s, rig.rim_m_s, rig.belt_m_s, rig.heat_flowing_w)
 
     def unsafe(self, *, creeping: bool = False, force_stays: bool = False) -> list[str]:
-        """Return what is missing to the safe state of invariant I5; empty when the rig is safe.
+        """Return what the safe state of invariant I5 lacks; empty when the rig is safe.
 
         ``creeping``: in a cool-down the wheel turns slowly, unloaded.
         """
@@ -72,7 +72,7 @@ class HarmObserver:
     """Watches one rig. ``found`` names each harm once, with time and figure. Copied together with the rig.
 
     ``planned_w`` is the greatest slip speed times load that the recipe asks for, W. ``heat_stays``: with a shorted
-    heater and a welded contactor nothing but hardware ends the heat.
+    heater and a welded contactor only hardware ends the heat.
     """
 
     rig: WheelRig
@@ -122,7 +122,7 @@ class HarmObserver:
             self._press_mm = inf
 
     def forget(self) -> None:
-        """Begin anew with the greatest figures."""
+        """Reset the greatest figures."""
         self.most_n = self.most_power_w = self.most_standing_j = 0.0
         self.most_hub_c = self.most_contact_c = -inf
 
