@@ -4,10 +4,10 @@
     python -m tests.campaigns.house --list    # and what each figure counts
 
 A line of code is neither blank, comment nor docstring. A small file has at most ``SMALL_LINES`` lines; ``__init__.py``,
-which says what a folder is for, counts as none. A name repeats where two folders hold a file of that name, unless one
-kind mirrors another: the same path below ``tester/kinds/<kind>`` or ``sim/machines/<kind>``. Lines of code, and words
-that are right in some sentences, have no limit: they are printed to be compared. Every figure is printed; the exit code
-is 1 where one misses its limit.
+which describes its folder, does not count. A name repeats where two folders hold a file of that name, unless one kind
+mirrors another: the same path below ``tester/kinds/<kind>`` or ``sim/machines/<kind>``. Lines of code, and words that
+are right in some sentences, have no limit: they are printed for comparison. Every figure is printed; the exit code is 1
+if one misses its limit.
 """
 
 from __future__ import annotations
@@ -104,11 +104,12 @@ def repeated(paths: Iterable[Path]) -> dict[str, list[Path]]:
 
 
 def in_circles(sources: Mapping[Path, str]) -> list[Path]:
-    """Return the modules that import each other in a circle, in functions and for types too, and those between two."""
+    """Return the modules that import each other in a circle, including imports in functions and for types, and the
+    modules between two circles."""
     paths = {".".join(path.with_suffix("").parts).removesuffix(".__init__"): path for path in sources}
     above = {name: set(_imported(sources[path], paths)) - {name} for name, path in paths.items()}
     below = {name: {importer for importer in above if name in above[importer]} for name in above}
-    # A module with no import left, or with no importer left, is in no circle.
+    # A module without imports, or without importers, is in no circle.
     while free := {name for name in above if not above[name] or not below[name]}:
         above = {name: names - free for name, names in above.items() if name not in free}
         below = {name: names - free for name, names in below.items() if name not in free}
@@ -116,7 +117,7 @@ def in_circles(sources: Mapping[Path, str]) -> list[Path]:
 
 
 def _imported(source: str, known: Container[str]) -> Iterator[str]:
-    """Yield the known modules that a module imports; a package only where a name comes from its ``__init__``."""
+    """Yield the known modules that a module imports; a package only if a name comes from its ``__init__``."""
     for node in ast.walk(ast.parse(source)):
         if isinstance(node, ast.Import):
             yield from (alias.name for alias in node.names if alias.name in known)
@@ -180,7 +181,7 @@ def words() -> tuple[Figure, ...]:
 
 
 def main() -> int:
-    """Print the figures; return 1 where one misses."""
+    """Print the figures; return 1 if one misses."""
     parser = argparse.ArgumentParser(description="How learnable the tree is, in figures.")
     parser.add_argument("--list", action="store_true", help="print what each figure counts")
     listed = parser.parse_args().list

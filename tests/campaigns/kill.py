@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.kill [--sample | --full] [--keep DIR]`: the process dies, the rig must not go on.
+"""`python -m tests.campaigns.kill [--sample | --full] [--keep DIR]`: the process dies, the rig must stop.
 
 Each kill: `tester sim` in a process of its own, `tester run` on the rig file that it writes; while the wheel slides
-under load with the heat on, the run gets SIGKILL. The rig's own log then says when its drives stood and its heat was
-off, by the devices alone. Then a new run must be able to take the rig over. Once, the run is stopped for 300 ms
-(SIGSTOP) instead: the drives stop by their watchdog, and the run, when it goes on, trips. Prints a line a figure; exit
+under load with the heat on, the run receives SIGKILL. The rig's own log then shows when the devices alone stopped the
+drives and switched the heat off. Then a new run must be able to take the rig over. Once, the run is paused for 300 ms
+(SIGSTOP) instead: the drives stop by their watchdog, and the run trips when it continues. Prints a line a figure; exit
 code 1 where one misses.
 """
 
@@ -26,9 +26,9 @@ from tests.realtime.state import Row, for_good, since
 KILLS = 20
 SAMPLE = 2
 WATCHDOG_S = 0.25
-"""Asked: both drives at standstill within this and their ramp, v/a."""
+"""Limit: both drives at standstill within this plus their ramp, v/a."""
 HEAT_OFF_S = 3.0
-"""Asked: no heat after this."""
+"""Limit: no heat after this."""
 STANDING_M_S, UNLOADED_N = 0.01, 5.0
 """Standstill and lifted, by the safety figures."""
 WATCHED_S = 4.0
@@ -38,7 +38,7 @@ SEED = 1
 
 @dataclass(frozen=True, slots=True)
 class Aftermath:
-    """What the rig did after its controller was gone; seconds from then on."""
+    """The rig's reaction to the loss of its controller; seconds since the loss."""
 
     standstill_s: float
     ramp_s: float
@@ -63,7 +63,7 @@ class Aftermath:
 
 
 def aftermath(rows: list[Row], gone_s: float, quick_stop_m_s2: float) -> Aftermath:
-    """Read off the log what happened after ``gone_s``, a moment of the machine's monotonic clock."""
+    """Read from the log what happened after ``gone_s``, on the machine's monotonic clock."""
     last = [row for row in rows if row.clock_s < gone_s][-1]
     after = since(rows, gone_s)
     stood = for_good(after, lambda row: max(abs(row.wheel_m_s), abs(row.belt_m_s)) < STANDING_M_S)
@@ -74,7 +74,7 @@ def aftermath(rows: list[Row], gone_s: float, quick_stop_m_s2: float) -> Afterma
 
 
 def watch(sim: SimProcess, gone_s: float) -> Aftermath:
-    """Let the rig live on for a while and say what it did."""
+    """Let the rig run on for a while and return its reaction."""
     rig = load_rig(sim.rig_file)
     slowest = min(rig.axes.belt.quick_stop_deceleration,
                   rig.axes.wheel.quick_stop_deceleration * 0.5e-3 * rig.geometry.wheel_diameter_mm)  # fmt: skip
@@ -83,7 +83,7 @@ def watch(sim: SimProcess, gone_s: float) -> Aftermath:
 
 
 def kill(folder: Path, after_s: float, *, again: bool) -> tuple[Aftermath, bool]:
-    """Kill a run ``after_s`` into its sliding; ``again``: see whether a new run can take the rig over."""
+    """Kill a run ``after_s`` into its sliding; ``again``: check whether a new run can take the rig over."""
     with sliding(folder) as (sim, run):
         clock.sleep_until(clock.monotonic() + after_s)
         gone_s = clock.monotonic()
@@ -101,7 +101,7 @@ def kill(folder: Path, after_s: float, *, again: bool) -> tuple[Aftermath, bool]
 
 
 def stall(folder: Path) -> list[Figure]:
-    """Stop a run for a while and let it go on."""
+    """Pause a run for a while, then let it continue."""
     with sliding(folder) as (sim, run):
         gone_s = clock.monotonic()
         run.process.send_signal(signal.SIGSTOP)
@@ -119,7 +119,7 @@ def stall(folder: Path) -> list[Figure]:
 
 
 def measure(folder: Path, kills: int) -> list[Figure]:
-    """Kill as often as asked and print each as it comes; return the figures."""
+    """Kill the requested number of runs and print each result as it comes; return the figures."""
     moments = random.Random(SEED)
     found: list[Aftermath] = []
     lost = 0

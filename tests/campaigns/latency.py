@@ -28,7 +28,7 @@ ASKED_P99_S = 0.02
 TRIP_S = 0.15
 """A scan later than this trips."""
 SLIDING_SHARE = 0.8
-"""Of the samples that 100 Hz give in the time, at least so many must count: between two slip pulses the wheel rolls."""
+"""Minimum share of the samples at 100 Hz that must count: between two slip pulses the wheel rolls."""
 
 SPIN = "while True: pass"
 WRITE = """
@@ -58,7 +58,7 @@ def load(folder: Path) -> Iterator[None]:
 
 
 class Counting:
-    """Tells whether the rig slid under load at a time, from its state log."""
+    """Determines from the state log whether the rig slid under load at a time."""
 
     def __init__(self, rows: Sequence[Row], from_s: float, to_s: float) -> None:
         self._times = [row.time_s for row in rows]
@@ -71,7 +71,7 @@ class Counting:
 
 
 def observe(folder: Path, seconds: float, *, idle: bool) -> tuple[Latencies, str]:
-    """Let a run slide for a while; return its latencies and why it ended too early, "" if it did not."""
+    """Let a run slide for a while; return its latencies and why it ended early, "" if it did not."""
     with sliding(folder, bus_log=True) as (sim, run), nullcontext() if idle else load(folder):
         print(f"priority: tester sim {policy_of(sim.process.pid)}, tester run {policy_of(run.process.pid)}", flush=True)
         began_s = sim.state.rows[-1].time_s
@@ -87,14 +87,15 @@ def observe(folder: Path, seconds: float, *, idle: bool) -> tuple[Latencies, str
 
 
 def policy_of(pid: int) -> str:
-    """Say whether a process has real-time priority: without it the load beside it decides the figures."""
+    """Return as text whether a process has real-time priority: without it, the competing load determines the
+    figures."""
     if sys.platform != "linux":
         return "ordinary"
     return "real-time" if os.sched_getscheduler(pid) & ~os.SCHED_RESET_ON_FORK == os.SCHED_RR else "ordinary"
 
 
 def figures_of(found: Latencies, ended: str, seconds: float) -> list[Figure]:
-    """Compare with what is asked."""
+    """Compare with the limits."""
     most = max(found.sync_periods_s, default=inf)
     return [
         holds("no trip", not ended, ended or "none", "none"),

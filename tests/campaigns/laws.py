@@ -1,7 +1,7 @@
-"""`python -m tests.campaigns.laws [--sample]`: what laws of materials take, and how right their tables are.
+"""`python -m tests.campaigns.laws [--sample]`: the cost of materials' laws, and the accuracy of their tables.
 
-Prints a line a figure and exits 1 where one misses. Times are of this process' processor time, on this core; what is
-asked of them is asked of a core of 2.5 GHz.
+Prints a line a figure and exits 1 where one misses. Times are processor time of this process on this core; their limits
+are for a core of 2.5 GHz.
 """
 
 from __future__ import annotations
@@ -28,15 +28,15 @@ from tests.tester.kinds.specimen_on_track.bench import GROSCH, TrackBench
 
 PAIRS = (("persson", "SBR", "S0"), ("persson", "NBR", "silicon carbide"), ("greta", "tread", "road"))
 POINT_MS, TABLE_S, SPEED = 1.0, 10.0, 0.9
-"""Asked: a value after the table, ms; a table of 40 x 20 x 5 points, s; the speed of the simulated rig with a table, in
-that with the wheel paper's law."""
+"""Limits: a value from the table, ms; a table of 40 x 20 x 5 points, s; the simulated rig's speed with a table relative
+to its speed with the wheel paper's law."""
 TABLED, ASKED = "persson", "paper"
 OTHERS = {ASKED: "1#", "wlf_bell": "SBR"}
-"""Laws to compare with, by a compound that they know."""
+"""Laws to compare with, each with a compound it covers."""
 
 
 class LawFigure(NamedTuple):
-    """What was measured, and whether that is what is asked."""
+    """A measured figure, and whether it is within its limit."""
 
     name: str
     value: str
@@ -80,7 +80,7 @@ def of_table(name: str, compound: str, surface: str, points: int) -> Iterator[La
 
 
 def of_calls(table: TabulatedLaw, places: list[tuple[float, float, float]]) -> Iterator[LawFigure]:
-    """Time a value, and one in its parts."""
+    """Time a value, and a value split into its parts."""
     calls: tuple[tuple[str, Callable[..., object]], ...] = (("a value", table.mu), ("its parts", table.components))
     for what, call in calls:
         began_s = process_time()
@@ -91,10 +91,9 @@ def of_calls(table: TabulatedLaw, places: list[tuple[float, float, float]]) -> I
 
 
 def of_rig(turns: int) -> Iterator[LawFigure]:
-    """Compare the simulated rig's speed with a table and with other laws, by the quickest run of each.
-
-    They run in turns, each of which begins with another rig: what else the machine does only ever slows a run, and the
-    quickest of ten scatters half as much as a median of ratios.
+    """Compare the simulated rig's speed with a table and with other laws, by the quickest run of each. They run in
+    turns, and each turn begins with another rig: other work on the machine can only slow a run, and the quickest of ten
+    scatters half as much as a median of ratios.
     """
     with TemporaryDirectory() as folder:
         os.environ[CACHE] = folder
@@ -118,7 +117,7 @@ def tick_s(compound: str, overrides: tuple[str, ...]) -> float:
     recipe = GROSCH.replace("compound: SBR", f'compound: "{compound}"').replace("[0.1", "[0.1 mm/s, 0.3 mm/s, 1")
     bench = TrackBench("grosch", recipe, overrides)
     bench.until(lambda one: one.world.track_m_s != 0.0, 1e4)
-    gc.collect()  # or it would take place in whichever run comes next
+    gc.collect()  # or it would happen in the next run
     ticks, began_s = 0, thread_time()
     while not bench.run.finished:
         bench.tick()

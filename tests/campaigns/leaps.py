@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.leaps [--sample] [--seeds N] [RECIPE ...]`: runs with leaps beside the same runs in which
-every scan is made.
+"""`python -m tests.campaigns.leaps [--sample] [--seeds N] [RECIPE ...]`: compares runs with leaps to the same runs with
+every scan.
 
-Wheels and specimens on a track, with all noise and scatter; each seed also draws by how much the rig is unlike what its
-file believes (wear, diameter, heat). A condition differs by its coefficient, its temperature, or by being kept in one
-run and lost in the other.
+Wheels and specimens on a track, with all noise and scatter; each seed also draws the rig's difference from its file
+(wear, diameter, heat). A condition differs in its coefficient, in its temperature, or by being kept in one run and lost
+in the other.
 """
 
 from __future__ import annotations
@@ -27,22 +27,22 @@ WHEEL = "wheel"
 
 SEEDS, SAMPLE_SEEDS = 20, 2
 RECIPES = (("quickstart", WHEEL), ("grosch", "grosch"), ("pin-on-disc", "pin-on-disc"))
-"""Recipes and their rigs ..."""
+"""Recipes and their rigs, ..."""
 WAITING = (WHEEL, "grosch")
 """... those that wait while only heat flows: a wheel rests and cools, a chamber tempers."""
 MOST_PERCENT, MOST_K = 0.02, 0.05
-"""Most by which a coefficient and its temperature may differ."""
+"""Maximum difference of a coefficient and of its temperature."""
 TWO = "0 degC, 30 degC"
 """Temperatures of the sample."""
 LOST_IN = 500
-"""Conditions of which one may be kept in one run and lost in the other."""
+"""In so many conditions, one may be kept in one run and lost in the other."""
 
 Repeats = dict[tuple[int, int], tuple[float, float]]
 """Coefficient and temperature (degC) of valid repeats, by condition and place in the order of measuring."""
 
 
 class Ended(NamedTuple):
-    """A run that has ended."""
+    """A finished run."""
 
     repeats: Repeats
     done: bool
@@ -52,7 +52,7 @@ class Ended(NamedTuple):
 
 
 def truth(rig: str, seed: int) -> tuple[str, ...]:
-    """Return how a rig is unlike what its file believes, and its recipes reckon with, drawn for a seed."""
+    """Return the differences, drawn for a seed, between a rig and what its file and recipes assume."""
     if rig == WHEEL:
         return wheel_truth("sim", seed)
     drawn = Random(f"truth {seed}").uniform

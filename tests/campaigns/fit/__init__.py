@@ -1,1 +1,1 @@
-"""Fits: does what was put in come back, do intervals hold it, and is a law refused that is not the fitted one?"""
+"""Fits: do they return the true parameters, do intervals contain these, and are wrong laws refused?"""

@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.fit [--sample] [--jobs N] [--whole N]`: does a fit give back what was put in, and is it
-silent where it has to be?
+"""`python -m tests.campaigns.fit [--sample] [--jobs N] [--whole N]`: does a fit return the true parameters, and does it
+give no intervals where it must not?
 
 Prints a line a figure and exits 1 where one misses. Synthetic conditions: held-out ones predicted, redundant sets of
-parameters, the paper's own table. Records drawn from the budget of grosch and of table2: laws that are not the fitted
-one are refused or without intervals, the right one is not, and intervals hold the truth. Some whole runs of both.
+parameters, the paper's own table. Records drawn from the budget of grosch and of table2: wrong laws are refused or have
+no intervals, the right one is accepted, and intervals contain the truth. Some whole runs of both.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ from tests.campaigns.fit import silence, synthetic, whole
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print every figure; 1 where one misses."""
+    """Print every figure; return 1 if one misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.fit", description=__doc__)
     parser.add_argument("--sample", action="store_true", help="few sets and records, no whole run")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes")

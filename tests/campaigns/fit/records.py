@@ -1,9 +1,9 @@
-"""Records of runs as a fit takes them, drawn condition by condition: a law, and all that a run may be off by.
+"""Records of runs as input of a fit, drawn condition by condition: a law, and all errors of a run.
 
 Hundreds of whole runs of `grosch`, and of the 40 conditions of `table2` without an angle, would take days. A record has
 the design of the recipe, the truth of a twin's law at the surface's own temperature, a factor of the piece, scatter of
-the setting and of repeats, and the errors that a run's conditions share, from the budget of the kind itself; what the
-fit knows of it is what ``run_points`` would say. ``tests.campaigns.fit.whole`` has some whole runs beside them.
+the setting and of repeats, and the errors that a run's conditions share, from the kind's own budget; the fit receives
+what ``run_points`` would return. ``tests.campaigns.fit.whole`` adds some whole runs.
 """
 
 from __future__ import annotations
@@ -37,14 +37,15 @@ REPEATS: Final = 5
 """Of the recipe table2."""
 COMPOUNDS: Final = ("1#", "2#", "3#")
 A_WHEEL: Final = 20
-"""Conditions that a wheel lasts for in table2, about: 2 mm of diameter."""
+"""Approximate life of a wheel in table2, in conditions: 2 mm of diameter."""
 FACTOR: Final = 0.01
-"""Standard uncertainty of calibration and alignment, which all conditions share: about what both budgets say [A]."""
+"""Standard uncertainty of calibration and alignment, which all conditions share: about the value of both budgets
+[A]."""
 
 
 @dataclass(frozen=True, slots=True)
 class Record:
-    """What is fitted, and the law that it is fitted with."""
+    """The fitted data, and the law of the fit."""
 
     law: Law
     cells: tuple[int, ...]

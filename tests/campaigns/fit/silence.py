@@ -1,4 +1,4 @@
-"""Is a law refused that is not the fitted one, the right one not, and do intervals hold the truth of records?"""
+"""Are wrong laws refused, is the right one accepted, and do intervals contain the truth of records?"""
 
 from __future__ import annotations
 
@@ -25,18 +25,18 @@ SEEDS, RIGHT_SEEDS, SETS = 10, 40, 400
 SAMPLE_SEEDS, SAMPLE_RIGHT, SAMPLE_SETS = 1, 4, 24
 RESAMPLES: Final = 399
 WRONG_REFUSED, RIGHT_REFUSED = 38 / 40, 2
-"""Least share of records of a wrong law that are refused, and most records of the right one."""
+"""Minimum share of refused records of a wrong law, and maximum share of the right one."""
 COVERED: Final = (0.93, 0.97)
-"""Share of fits whose interval has to hold a parameter's truth."""
+"""Required share of fits whose interval contains a parameter's truth."""
 DOUBT: Final = 0.01
-"""A count of fits misses where it is less likely than this, either way, at the nearer end of what is asked [A]."""
+"""A count of fits misses if it is less likely than this, either way, at the nearer end of the required range [A]."""
 CAN_SHOW: Final = 0.95
-"""A departure that is seen with less power than this is one that the data cannot show."""
+"""The data cannot show a departure that is detected with less power than this."""
 Figure = tuple[str, bool]
 
 
 class Kind(NamedTuple):
-    """A recipe, how records of it are drawn, its right law with its truth, and laws that are not the fitted one."""
+    """A recipe, the draw of its records, its right law with its truth, and wrong laws."""
 
     name: str
     draw: Callable[[laws.PlainMaker, int], Record]
@@ -62,7 +62,7 @@ KINDS: Final = (
 
 
 def silent(record: Record) -> str:
-    """Return why a record has no intervals, "" where it has some."""
+    """Return why a record has no intervals, "" if it has some."""
     try:
         found = fit_group(record.law, record.points[0].group, record.points, record.cells, count=RESAMPLES)
     except FitError as error:
@@ -72,7 +72,7 @@ def silent(record: Record) -> str:
 
 def power(record: Record) -> float:
     """Return the share of records like this one in which the departure of the twin's law from the fitted one is
-    refused, as the fit reckons it; 1 where the law cannot be fitted at all.
+    refused, computed as in the fit; 1 if the law cannot be fitted at all.
     """
     exact = np.array(record.free_of_error)
     points = [replace(one, value=exp(y)) for one, y in zip(record.points, record.free_of_error, strict=True)]
@@ -107,10 +107,10 @@ def _held(kind: str, seed: int) -> dict[str, bool]:
 
 
 def refused(kind: Kind, pool: ProcessPoolExecutor, seeds: int) -> Iterator[Figure]:
-    """Yield how many records of laws that are not the fitted one are refused, with the power of the tests.
+    """Yield how many records of wrong laws are refused, with the power of the tests.
 
-    A law that the tests have little power against may still be refused by the band of a parameter. One that is not
-    refused so is one that the data cannot show; its count agrees with the power, and it is left out of what is asked.
+    A parameter's band may still refuse a law against which the tests have little power. If not, the data cannot show
+    that law; its count agrees with the power, and it has no limit.
     """
     asked, met = 0, 0
     for name in kind.wrong:
@@ -134,7 +134,7 @@ def right(kind: Kind, pool: ProcessPoolExecutor, seeds: int) -> Figure:
 
 
 def covered(kind: Kind, pool: ProcessPoolExecutor, sets: int) -> Figure:
-    """Return how often intervals hold the truth, each parameter by itself."""
+    """Return how often intervals contain the truth, for each parameter."""
     found = [*pool.map(partial(_held, kind.name), range(2000, 2000 + sets), chunksize=8)]
     counts = {name: sum(one[name] for one in found) for name in found[0]}
     low, high = COVERED
@@ -144,13 +144,13 @@ def covered(kind: Kind, pool: ProcessPoolExecutor, sets: int) -> Figure:
 
 
 def tail(count: int, sets: int, share: float, *, below: bool) -> bool:
-    """Return whether a count of sets, or one further out, is no less likely than ``DOUBT`` at a share."""
+    """Return whether a count of sets, or a more extreme one, is at least as likely as ``DOUBT`` at a share."""
     places = range(count + 1) if below else range(count, sets + 1)
     return sum(comb(sets, k) * share**k * (1.0 - share) ** (sets - k) for k in places) >= DOUBT
 
 
 def figures(*, sample: bool, jobs: int) -> Iterator[Figure]:
-    """Yield every figure in words, and whether it is met."""
+    """Yield every figure in words, and whether it passes."""
     seeds, right_seeds, sets = (
         (SAMPLE_SEEDS, SAMPLE_RIGHT, SAMPLE_SETS) if sample else (SEEDS, RIGHT_SEEDS, SETS)
     )

@@ -31,10 +31,10 @@ NOISE: Final = 0.01
 """Standard deviation of ln mu."""
 SETS, SAMPLE = 200, 24
 EVERY: Final = 8
-"""Of the conditions of a set, one of so many is held out; so many there are at each temperature."""
+"""Number of conditions at each temperature; one in so many of a set's conditions is held out."""
 HELD_OUT: Final = 0.03
 CELLS: Final = 0.95
-"""Share of conditions that are asked to be so near where nothing of their load and slip was fitted [A]."""
+"""Required share of conditions this near, if nothing of their load and slip was fitted [A]."""
 SAME: Final = 1e-12
 SCALES: Final = (0.1, 0.5, 1.987, 10.0)
 """Numbers by which alpha and gamma are multiplied, a1 and a2 divided."""
@@ -54,7 +54,7 @@ def made(law: Law, seed: int, noise: float) -> tuple[tuple[float, ...], list[Fit
 
 
 def split(points: Sequence[FitPoint], seed: int) -> tuple[list[FitPoint], list[FitPoint]]:
-    """Return conditions to be fitted and held out: one at each temperature, of another load or slip each time."""
+    """Return conditions to be fitted and held out: one at each temperature, each with another load or slip."""
     out = [(i + i // EVERY + seed) % EVERY == 0 for i in range(len(points))]
     pairs = [*zip(points, out, strict=True)]
     return [one for one, left in pairs if not left], [one for one, left in pairs if left]
@@ -68,7 +68,8 @@ def split_cell(points: Sequence[FitPoint], seed: int) -> tuple[list[FitPoint], l
 
 
 def held_out(sets: int, split: Split = split) -> tuple[float, int, int]:
-    """Return the largest error of a prediction of a held-out condition without its noise, how many miss, and all."""
+    """Return the largest prediction error of a held-out condition without its noise, the number of misses, and of
+    all."""
     largest, over, count = 0.0, 0, 0
     for seed in range(sets):
         truth, points = made(PAPER, seed, NOISE)
@@ -81,7 +82,7 @@ def held_out(sets: int, split: Split = split) -> tuple[float, int, int]:
 
 
 def redundant() -> float:
-    """Return by how much predictions differ between sets of Table 3's parameters that mean the same, and their form."""
+    """Return the difference of predictions between equivalent sets of Table 3's parameters, and their form."""
     t, load, slip = np.array(DESIGN).T
     largest = 0.0
     for given in COMPOUNDS.values():
@@ -97,7 +98,7 @@ def redundant() -> float:
 
 
 def figures(sets: int) -> Iterator[tuple[str, bool]]:
-    """Yield every figure in words, and whether it is met."""
+    """Yield every figure in words, and whether it passes."""
     largest, over, count = held_out(sets)
     text = f"held-out conditions, Eq 6 with {100.0 * NOISE:g} % noise: {count - over} of {count} within"
     yield f"{text} {100.0 * HELD_OUT:g} % (asked: all), largest {100.0 * largest:.2f} %", over == 0

@@ -1,4 +1,4 @@
-"""Laws by which a twin rubs and which are not the ones that are fitted to it; a rig file names them, ``MODULE:NAME``.
+"""Friction laws of a twin that differ from the fitted ones; a rig file names them, ``MODULE:NAME``.
 
 Those of the track are bells as ``wlf_bell`` fits them, each changed in one way; those of the wheel likewise.
 """
@@ -19,7 +19,7 @@ STEEPER: Final = 1.25
 APART_DECADES: Final = 3.0
 """Of two bells that merge into one."""
 PER_KELVIN: Final = 0.003
-"""By which the amplitude falls."""
+"""Fall of the amplitude."""
 SLOWEST_M_S: Final = 1e-6
 Value = Callable[[float, float, float], float]
 """From degC, N and m/s to a coefficient."""
@@ -32,7 +32,7 @@ class TwinLaw:
     value: Value
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
-        """Return the coefficient; below the slowest speed that of it."""
+        """Return the coefficient; below the slowest speed, that of the slowest speed."""
         return self.value(temperature_c, load_n, max(slip_m_s, SLOWEST_M_S))
 
 
@@ -40,7 +40,7 @@ _BELL: Final = WlfBellParameters()
 
 
 def _decades(temperature_c: float, speed_m_s: float, steeper: float = 1.0) -> float:
-    """Return how far a speed is above that of the bell's maximum."""
+    """Return the distance of a speed above the bell's maximum."""
     return log10_shift(temperature_c, _BELL.t_ref, steeper * C1) + log10(speed_m_s / _BELL.v_ref)
 
 

@@ -1,5 +1,5 @@
-"""Whole runs of grosch on the simulated rig, by laws that are the fitted one and that are not: do they end as the
-records that are drawn?
+"""Whole runs of grosch on the simulated rig, with the fitted law and with wrong ones: do their fits end like those of
+drawn records?
 
 The rig is ticked at 10 Hz instead of 20 while drives are enabled, which halves the time of a run.
 """
@@ -33,7 +33,7 @@ LAWS: Final[Mapping[str, str]] = {
 
 
 class Whole(NamedTuple):
-    """A run: by which law, how many conditions it has, why its fit is silent, and its residual standard deviation."""
+    """A run: its law, its number of conditions, why its fit has no intervals, and its residual standard deviation."""
 
     name: str
     conditions: int

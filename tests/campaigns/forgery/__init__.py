@@ -1,1 +1,2 @@
-"""Forges a finished run in 15 ways and looks whether `tester verify` tells: ``python -m tests.campaigns.forgery``."""
+"""Forges a finished run in 15 ways and checks whether `tester verify` detects it: ``python -m
+tests.campaigns.forgery``."""

@@ -1,4 +1,4 @@
-"""``python -m tests.campaigns.forgery``: 20 forgeries, a line each; exit code 1 where one that must be told is not."""
+"""``python -m tests.campaigns.forgery``: 20 forgeries, a line each; exit code 1 if one that must be detected is not."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.campaigns.forgery.run import finished_run
 
 
 def main() -> int:
-    """Forge, print what was told, return the exit code."""
+    """Forge, print which forgeries were detected, return the exit code."""
     with TemporaryDirectory(prefix="forgery-") as home:
         with redirect_stdout(StringIO()):
             run, other = finished_run(Path(home) / "one", 1), finished_run(Path(home) / "two", 2)

@@ -1,4 +1,4 @@
-"""What somebody might change in a run's folder; and the chain, tables and manifest made anew to hide it."""
+"""Possible changes of a run's folder, and a new chain, tables and manifest to hide them."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tester.store.sample_blocks import unpack_array
 
 @dataclass(frozen=True, slots=True)
 class Forgery:
-    """One way: ``change`` alters the folder (second argument: another run's folder)."""
+    """One forgery: ``change`` alters the folder (second argument: another run's folder)."""
 
     name: str
     change: Callable[[Path, Path], None]
@@ -57,13 +57,13 @@ def _no_manifest(folder: Path, _other: Path) -> None:
 
 
 def _manifest_remade(folder: Path, _other: Path) -> None:
-    """Change a reason and make the manifest anew, with the record's own head."""
+    """Change a reason and rebuild the manifest, with the record's own head."""
     _sql("UPDATE exclusion SET reason = 'debris'")(folder, folder)
     remake_manifest(folder)
 
 
 def _table(folder: Path, _other: Path) -> None:
-    """Exchange a coefficient in conditions.csv and make the manifest anew."""
+    """Replace a coefficient in conditions.csv and rebuild the manifest."""
     path = folder / "conditions.csv"
     text = path.read_text("utf-8")
     path.write_text(text.replace(",0.", ",1.", 1), encoding="utf-8", newline="")
@@ -82,7 +82,8 @@ def _other_folder(folder: Path, other: Path) -> None:
 
 
 def _chain_dropped(version: int) -> Callable[[Path, Path], None]:
-    """Raise every coefficient, drop the chain, and claim a schema; tables and manifest stay as a reader makes them."""
+    """Raise every coefficient, drop the chain, and claim a schema; tables and manifest remain as a reader makes
+    them."""
 
     def change(folder: Path, _other: Path) -> None:
         with closing(sqlite3.connect(folder / "run.db")) as database, database:
@@ -99,7 +100,7 @@ _TABLE_OF_ANOTHER_VERSION = "UPDATE session SET software_version = '0.0.9'"
 
 
 def _table_of_another_version(folder: Path, other: Path) -> None:
-    """Exchange a coefficient in a table, and let an earlier version have written it."""
+    """Replace a coefficient in a table, and mark an earlier version as its writer."""
     _sql(_TABLE_OF_ANOTHER_VERSION)(folder, other)
     _table(folder, other)
 
@@ -133,14 +134,14 @@ FORGERIES = (
 
 
 def remake_manifest(folder: Path) -> None:
-    """Make the manifest anew, over whatever is there."""
+    """Rebuild the manifest, over the present files."""
     with RunReader(folder) as reader:
         head = reader.record_head()
     (folder / MANIFEST).write_text(manifest_text(folder, head), encoding="utf-8")
 
 
 def remake_all(folder: Path) -> None:
-    """Make the chain anew over the rows as they are, then tables and manifest: what only a kept head shows."""
+    """Rebuild the chain over the present rows, then tables and manifest: only a kept head reveals this."""
     with closing(sqlite3.connect(folder / "run.db")) as database, database:
         database.execute(f"PRAGMA user_version = {VERSION}")
         database.execute("CREATE TABLE IF NOT EXISTS chain (seq INTEGER PRIMARY KEY, name, key, row_sha256, head)")
@@ -151,7 +152,8 @@ def remake_all(folder: Path) -> None:
 
 
 def told(run: Path, other: Path, forgery: Forgery, scratch: Path) -> tuple[bool, bool, bool, bool]:
-    """Forge a copy of a run; return whether it is told: with the head kept, without; and both with all made anew."""
+    """Forge a copy of a run; return whether it is detected: with the head kept, without; and both again after
+    rebuilding everything."""
     head = verify(run).head
     found: list[bool] = []
     for number, anew in enumerate((False, True)):

@@ -1,4 +1,4 @@
-"""Two short runs on the simulated rig with everything in them that is forged: a trip, a wear check, two exclusions."""
+"""Two short runs on the simulated rig with everything that the forgeries need: a trip, a wear check, two exclusions."""
 
 from __future__ import annotations
 

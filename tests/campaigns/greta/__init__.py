@@ -1,1 +1,1 @@
-"""The recipe `greta` whole: shares against what was put in, trends against what the paper states."""
+"""The recipe `greta` whole: shares against the truth, trends against the paper's statements."""

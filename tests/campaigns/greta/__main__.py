@@ -1,10 +1,11 @@
-"""`python -m tests.campaigns.greta [--sample] [--seeds N] [--jobs N]`: paper 002's Fig 21 on discs unlike their files.
+"""`python -m tests.campaigns.greta [--sample] [--seeds N] [--jobs N]`: paper 002's Fig 21 on discs that differ from
+their files.
 
 Three whole runs of the recipe `greta` a seed: as it ships, 30 K colder, and on a rougher tape. Of the first, the shares
-of adhesion and hysteresis that `tester components` states are held against the law at the true temperature of the
-rubber; of all three, dry and wet, each trend that the paper states. How wide the intervals are beside the errors is
-said: where a dry contact is much warmer than a wet one, what is not known of the sensitivity makes them many times as
-wide. Prints a line a figure and exits 1 where one misses. A seed takes 40 s of processor time compiled.
+of adhesion and hysteresis that `tester components` states are compared with the law at the true temperature of the
+rubber; of all three, dry and wet, each trend that the paper states. The intervals' widths beside the errors are
+printed: where a dry contact is much warmer than a wet one, the uncertain sensitivity makes them many times as wide.
+Prints a line a figure and exits 1 where one misses. A seed takes 40 s of processor time compiled.
 """
 
 from __future__ import annotations
@@ -22,11 +23,11 @@ from tests.campaigns.greta.trends import STATEMENTS, SeedRuns, percent
 
 SEEDS, SAMPLE_SEEDS = 20, 1
 HELD = 0.9
-"""Share of seeds that is asked: 18 of 20."""
+"""Required share of seeds: 18 of 20."""
 WIDEST = 0.07
-"""Most that the median of the expanded uncertainties of the mean shares may be [A]: as for the recipe `pin-on-disc`."""
+"""Maximum median of the mean shares' expanded uncertainties [A]: as for the recipe `pin-on-disc`."""
 CLASSES = ((0.0, 3.0), (3.0, 20.0), (20.0, inf))
-"""Dry contact over the wet one, K: rows of their own in what is said of the width."""
+"""Temperature of the dry contact over the wet one, K: classes of rows for the printed widths."""
 
 
 def of_shares(runs: Sequence[DiscRun]) -> Iterator[Figure]:
@@ -42,7 +43,7 @@ def of_shares(runs: Sequence[DiscRun]) -> Iterator[Figure]:
 
 
 def said_of_widths(runs: Sequence[DiscRun]) -> Iterator[str]:
-    """Yield how wide the intervals of the shares are beside the errors: of each class of rows, and of the means."""
+    """Yield the widths of the shares' intervals beside their errors: for each class of rows, and for the means."""
     for low, high in CLASSES:
         rows = [row for run in runs for row in run.rows if low <= abs(row.warmer_k) < high]
         if parts := [part for row in rows for part in row.parts if part.name == "share"]:
@@ -69,7 +70,7 @@ def of_trends(seeds: Sequence[SeedRuns]) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run; 1 where a figure misses."""
+    """Run; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.greta", description=__doc__)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_SEEDS} seed, the first compound")
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"seeds ({SEEDS})")

@@ -12,14 +12,14 @@ from sim.physics.materials import Components, Rubber, Surface
 
 NAME: Final = "tests.campaigns.greta.direct:DIRECT"
 STEP_C: Final = 0.02
-"""Temperatures count in such steps: friction changes by less than 0.1 % over one."""
+"""Temperatures are rounded to this step: friction changes by less than 0.1 % over one."""
 
 
 class DirectGreta:
-    """The law, whose value is kept while temperature, load and speed stay."""
+    """The law; its value is cached while temperature, load and speed do not change."""
 
     def __init__(self, law: Greta) -> None:
-        """Take the law."""
+        """Store the law."""
         self._components = lru_cache(maxsize=4096)(law.components)
 
     def components(self, temperature_c: float, load_n: float, slip_m_s: float) -> Components:

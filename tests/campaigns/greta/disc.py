@@ -1,9 +1,9 @@
-"""Runs of the recipe `greta` on simulated discs that are not what is believed of them.
+"""Runs of the recipe `greta` on simulated discs that differ from the beliefs about them.
 
-A seed has its own disc: weights, cell, its axis and thermometers are off by up to what the budget allows them, the
-specimen wears at 0.3 to 3 times the packaged rate, warms and cools at 0.7 to 1.3 times it, is of another area, and the
-tape is rougher and of other wave lengths than the file that the recipe names. Speed comes from the disc's drive: no
-diameter counts. Water leaves no adhesion, as `tester components` assumes.
+A seed has its own disc: errors of weights, cell, its axis and thermometers reach what the budget allows, the specimen
+wears at 0.3 to 3 times the packaged rate, warms and cools at 0.7 to 1.3 times it, is of another area, and the tape is
+rougher and has other wave lengths than the recipe's file. Speed comes from the disc's drive: no diameter matters. Water
+leaves no adhesion, as `tester components` assumes.
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ from tests.campaigns.greta.direct import NAME
 
 BASE, COLD, ROUGH = "base", "cold", "rough"
 COLD_C, WARM_C = 10.0, 40.0
-"""Air of the cold runs and of the recipe, degC: 30 K apart, as the paper's statement."""
+"""Air of the cold runs and of the recipe, degC: 30 K apart, as in the paper's statement."""
 ROUGHER = 1.7
 """Ra of the rough tape over that of the seed's own."""
 TAPE = "tape of the disc"
@@ -89,7 +89,7 @@ class Disc:
 
     @property
     def pyrometer_bias_k(self) -> float:
-        """By how much its pyrometer is off, K."""
+        """Error of its pyrometer, K."""
         return TrackSensors().pyrometer_bias * uniforms(4, self.seed, "session track")[0]
 
     def overrides(self, ambient_c: float) -> tuple[str, ...]:
@@ -108,7 +108,7 @@ class Disc:
 
 @dataclass(frozen=True, slots=True)
 class Part:
-    """What a run says of adhesion, hysteresis or the share, and what was put in."""
+    """A run's adhesion, hysteresis or share, and the truth."""
 
     name: str
     value: float
@@ -117,7 +117,7 @@ class Part:
 
     @property
     def held(self) -> bool:
-        """Return whether the interval holds the truth."""
+        """Return whether the interval contains the truth."""
         return abs(self.value - self.truth) <= self.expanded
 
 
@@ -145,10 +145,10 @@ class DiscRun:
 
 
 class Judge:
-    """Knows what is true of a disc's runs."""
+    """Knows the truth of a disc's runs."""
 
     def __init__(self, disc: Disc, tape: Surface) -> None:
-        """Take the disc and its tape."""
+        """Store the disc and its tape."""
         self._disc, self._tape = disc, tape
 
     @cached_property
@@ -158,7 +158,7 @@ class Judge:
         return {name: greta(library.rubber(name), self._tape, figures) for name in ("tread", "tread soft")}
 
     def row(self, pair: FilmPair) -> Row:
-        """Hold a pair against the law at the true temperature of the dry specimen."""
+        """Compare a pair with the law at the true temperature of the dry specimen."""
         info, dry = pair.dry.info, pair.dry.result
         compound, held = info.setpoint.compound, info.setpoint
         load_n, speed_m_s = held.number("load"), held.number("track_speed")
@@ -178,7 +178,7 @@ def _part(name: str, value: PartValue, truth: float) -> Part:
 
 
 def carry_out(seed: int, name: str, *, sample: bool = False) -> DiscRun:
-    """Run the recipe on the disc of a seed; a sample has its first compound. Raises RuntimeError where it ends early or
+    """Run the recipe on the disc of a seed; a sample has its first compound. Raises RuntimeError if it ends early or
     lacks a pair."""
     disc = Disc.of(seed)
     tape = disc.tape(ROUGHER if name == ROUGH else 1.0)
@@ -196,7 +196,7 @@ def carry_out(seed: int, name: str, *, sample: bool = False) -> DiscRun:
             str(recipe), "pin-on-disc", disc.overrides(air_c), out=Path(place) / "runs", seed=seed, samples=False
         )
         session = Session(options, screen)
-        # The recipe does not name this surface, so no copy of it goes with the run: it is in the laboratory's folder.
+        # The recipe does not name this surface, so the run has no copy of it: it is in the laboratory's folder.
         os.environ[VARIABLE] = str(Path(place) / "laboratory")
         try:
             code = session.run()

@@ -1,7 +1,8 @@
-"""What the paper on GrETA (doi 10.1177/0954407014521402) states of trends, and what runs show of each.
+"""Trends stated by the paper on GrETA (doi 10.1177/0954407014521402), and the runs' result for each.
 
-A statement is the paper's own, with its place; ``sign`` is what it has friction do. Where the paper contradicts itself,
-or its model differs from its words, an erratum tells which sign the model has, and the page of errata has to say so.
+Each statement is the paper's own, with its place; ``sign`` is the stated change of friction. Where the paper
+contradicts itself, or its model differs from its words, an erratum gives the model's sign, and the page of errata must
+contain it.
 """
 
 from __future__ import annotations
@@ -69,7 +70,7 @@ def _ratios(below: Sequence[Row], above: Sequence[Row], value: Value) -> Iterato
 
 @dataclass(frozen=True, slots=True)
 class Statement:
-    """A trend that the paper states. ``sign``: of the change that it states, or that the model has if it erred."""
+    """A trend that the paper states. ``sign``: of the stated change, or of the model's if the statement is wrong."""
 
     words: str
     place: str
@@ -77,12 +78,12 @@ class Statement:
     value: Value
     sign: int
     least: float = 0.0
-    """Least change of its logarithm's size."""
+    """Minimum absolute change of its logarithm."""
     erratum: str = ""
-    """Words that the page of errata has to have."""
+    """Words that the page of errata must contain."""
 
     def change(self, runs: SeedRuns) -> float:
-        """Return by how much friction changes in a seed: the mean of the logarithms of its ratios."""
+        """Return the change of friction in a seed: the mean of the logarithms of its ratios."""
         return fmean(log(ratio) for ratio in self.ratios(runs, self.value))
 
     def shown(self, change: float) -> bool:
@@ -91,7 +92,7 @@ class Statement:
 
     @property
     def explained(self) -> bool:
-        """Return whether the errata say what they have to."""
+        """Return whether the errata contain the required words."""
         return not self.erratum or self.erratum in " ".join(ERRATA.read_text(encoding="utf-8").split())
 
 
@@ -110,7 +111,7 @@ STATEMENTS: Final = (
     Statement("... less hysteresis", "Fig 18", over_smoothness, wet, -1),
     Statement("... and more friction in all", "Fig 18", over_smoothness, dry, 1),
 )  # fmt: skip
-"""The order is that of the figures that are printed."""
+"""In the order of the printed figures."""
 
 
 def percent(change: float) -> float:

@@ -1,1 +1,1 @@
-"""What the README's commands take on a fresh copy. Run by ``python -m tests.campaigns.install``."""
+"""Time and CPU of the README's commands on a fresh copy. Run by ``python -m tests.campaigns.install``."""

@@ -1,7 +1,7 @@
-"""`python -m tests.campaigns.install [NAME ...] [--sample] [--keep FOLDER]`: what the README's commands take.
+"""`python -m tests.campaigns.install [NAME ...] [--sample] [--keep FOLDER]`: cost of the README's commands.
 
-Fresh copies and environments, no package cache. Prints a line a figure; exit code 1 where one misses. Needs bash and
-a package index. The limits of CPU time are scaled by what `python3 -c pass` takes in the same run; wall times are not.
+Fresh copies and environments, no package cache. Prints a line a figure; exit code 1 where one misses. Needs bash and a
+package index. CPU time limits are scaled by the time of `python3 -c pass` in the same run; wall times are not.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from tests.campaigns.install.topics import SAMPLE, TOPICS, whole_test_command
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure the named topics; 1 where a figure misses."""
+    """Measure the named topics; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.install", description="What the README takes.")
     parser.add_argument("names", nargs="*", metavar="NAME", help="topics, all unless named: " + ", ".join(TOPICS))
     parser.add_argument("--sample", action="store_true", help="only " + ", ".join(SAMPLE))
@@ -46,7 +46,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _place(kept: Path | None) -> AbstractContextManager[Path | str]:
-    """Return where copies are made: a folder that stays, or one that goes when they have been measured."""
+    """Return the folder for copies: a permanent one, or one that is removed after the measurement."""
     if kept is not None:
         return nullcontext(kept)
     return TemporaryDirectory(prefix="install-", ignore_cleanup_errors=True)

@@ -1,4 +1,4 @@
-"""Fresh copies of the checkout, and commands in them: what they print and when, and the CPU time that they take."""
+"""Fresh copies of the checkout, and commands in them: their output with times, and their CPU time."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
-from time import monotonic  # noqa: TID251 - what a person waits is measured
+from time import monotonic  # noqa: TID251 - measures how long a person waits
 
 ROOT = Path(__file__).parents[3]
 PASS_S = 0.015
-"""CPU time of `python3 -c pass` on the machine for which the limits are stated (s)."""
+"""CPU time of `python3 -c pass` on the reference machine of the limits (s)."""
 _LEFT_OUT = shutil.ignore_patterns(".git", ".venv", "runs", "build", "dist", "__pycache__", "*.egg-info", ".*_cache")
 _NOT_HANDED_ON = frozenset(
     {"PYTHONPATH", "PYTHONDONTWRITEBYTECODE", "VIRTUAL_ENV", "FRICTION_TESTER_COMPILE", "PIP_CACHE_DIR"}
@@ -24,13 +24,13 @@ _NOT_HANDED_ON = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Told:
-    """What a command printed on both streams, with its exit code (None: it was ended), times in s."""
+    """A command's output on both streams, its exit code (None: it was terminated), and times in s."""
 
     code: int | None
     text: str
     wall_s: float
     cpu_s: float
-    """Of the command and all its children; 0 where it was ended."""
+    """Of the command and all its children; 0 if it was terminated."""
     first_s: float
     """Until the first output."""
     silence_s: float
@@ -38,7 +38,7 @@ class Told:
 
 
 def fresh_copy(to: Path) -> Path:
-    """Copy what the repository holds (and what is not ignored, for a look before a commit) to a new folder."""
+    """Copy the repository's files (and those not ignored, for a check before a commit) to a new folder."""
     listed = subprocess.run(
         ["git", "-C", str(ROOT), "ls-files", "--cached", "--others", "--exclude-standard", "-z"],
         capture_output=True, text=True, check=False,
@@ -71,9 +71,9 @@ def carry_out(
     cores: set[int] | None = None,
     **env: str,
 ) -> Told:
-    """Run a shell command without a package cache; end it where ``until`` holds of what it has printed so far.
+    """Run a shell command without a package cache; terminate it once ``until`` is true of its output so far.
 
-    ``heard``: called with each new piece of its output, and the time since its start (s). ``cores``: those it may run
+    ``heard``: called with each new piece of its output, and the time since its start (s). ``cores``: cores it may run
     on.
     """
     environment = {key: value for key, value in os.environ.items() if key not in _NOT_HANDED_ON}
@@ -108,8 +108,8 @@ def carry_out(
 def pass_s(interpreter: Path) -> float:
     """Return the CPU time of `python -c pass` (s), the median of eleven.
 
-    A fresh environment's interpreter: another may have a launcher in front of it, or load what its site-packages ask
-    for, which would make the limits that are scaled by it too wide.
+    Uses a fresh environment's interpreter: another may start through a launcher, or load what its site-packages
+    require, which would make the scaled limits too wide.
     """
 
     def once() -> float:
@@ -122,7 +122,7 @@ def pass_s(interpreter: Path) -> float:
 
 
 def megabytes(folder: Path) -> float:
-    """Return what a folder takes on the disk (10^6 bytes), links not followed."""
+    """Return a folder's size on the disk (10^6 bytes), links not followed."""
     return sum(path.lstat().st_blocks for path in folder.rglob("*")) * 512 / 1e6
 
 

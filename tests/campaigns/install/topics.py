@@ -1,4 +1,4 @@
-"""What is measured: the README's two commands, the ways of installing, interpreters, the compiled installation."""
+"""The topics: the README's two commands, the ways of installing, interpreters, the compiled installation."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ TESTS_BEGIN_WITHIN_S = 90.0
 COMPILED_AT_MOST = 0.6
 """Two cores against one."""
 BUILD_CPU_AT_MOST_S = 110.0
-"""Of a compiled wheel, mypy's installation included, where `python3 -c pass` takes PASS_S: a minute on two cores."""
+"""Of a compiled wheel, including mypy's installation, where `python3 -c pass` takes PASS_S: a minute on two cores."""
 VERSIONS = ("3.11", "3.12", "3.13", "3.14")
 _ROW = re.compile(r"^1#\s+300\s+(100|200)\s+0\s+40\s+0\.\d{3}\s+0\.\d{3}\s+\d of \d", re.MULTILINE)
 _SDIST = "import sys; sys.path.insert(0, '.'); from compiling import backend; backend.build_sdist(sys.argv[1])"
@@ -78,7 +78,7 @@ def test_command(work: Path) -> Iterator[Figure]:
 
 
 def whole_test_command(work: Path) -> Iterator[Figure]:
-    """The README's test command to its end, its output shown, and the time to the first test's result."""
+    """The README's test command to its end, with its output, and the time to the first test's result."""
     copy, unit_s = fresh_copy(work / "tests"), _pass_before_s(work)
     so_far, first_s = "", inf
 
@@ -96,14 +96,14 @@ def whole_test_command(work: Path) -> Iterator[Figure]:
 
 
 def _pass_before_s(work: Path) -> float:
-    """Return what `python -c pass` takes just before the command, s: a machine's pace drifts within minutes."""
+    """Return the time of `python -c pass` just before the command, s: a machine's speed drifts within minutes."""
     work.mkdir(parents=True, exist_ok=True)
     must(carry_out("python3 -m venv --without-pip bare", work))
     return pass_s(work / "bare" / "bin" / "python")
 
 
 def _begins(unit_s: float, wall_s: float) -> Figure:
-    """Return the figure of the time to the first test's result; ``unit_s``: what `python -c pass` takes."""
+    """Return the figure of the time to the first test's result; ``unit_s``: the time of `python -c pass`."""
     limit = TESTS_BEGIN_WITHIN_S * max(1.0, unit_s / PASS_S)
     note = f" (wall, downloads included; `python3 -c pass` {1e3 * unit_s:.1f} ms before)"
     return at_most("tests begin after", wall_s, round(limit, 1), "s", 0, note=note)
@@ -129,7 +129,7 @@ def ways(work: Path) -> Iterator[Figure]:
 
 
 def interpreters(work: Path) -> Iterator[Figure]:
-    """Every interpreter that this machine has: installs, and runs the quickstart with the same table."""
+    """Every interpreter on this machine: installs, and runs the quickstart with the same table."""
     tables: dict[str, bytes] = {}
     for version in VERSIONS:
         python = interpreter(version)
@@ -148,7 +148,7 @@ def interpreters(work: Path) -> Iterator[Figure]:
 
 
 def compiled(work: Path) -> Iterator[Figure]:
-    """The compiled installation on one core and on two; both need to be idle. Takes some minutes."""
+    """The compiled installation on one core and on two; both must be idle. Takes some minutes."""
     usable = sorted(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else []
     if len(usable) < 2:
         yield holds("cores", False, str(len(usable)), "two")
@@ -177,7 +177,7 @@ def compiled(work: Path) -> Iterator[Figure]:
 
 
 def wheel(work: Path) -> Iterator[Figure]:
-    """A compiled wheel: CPU time to build; used where no compiler is, with a laboratory's own kind. Takes minutes."""
+    """A compiled wheel: CPU time to build; used without a compiler, with a laboratory's own kind. Takes minutes."""
     copy = fresh_copy(work / "wheel")
     must(carry_out("python3 -m venv builder && python3 -m venv user", copy))
     told = must(carry_out("builder/bin/pip wheel -v --no-deps -w dist .", copy, FRICTION_TESTER_COMPILE="1"))
@@ -191,7 +191,7 @@ def wheel(work: Path) -> Iterator[Figure]:
     elsewhere.mkdir()
     for folder in ("tests", "docs"):
         shutil.copytree(copy / folder, elsewhere / folder)
-    tools = work / "tools"  # a shell, and nothing else of this computer
+    tools = work / "tools"  # a shell, and nothing else from this computer
     tools.mkdir()
     (tools / "bash").symlink_to(shutil.which("bash") or "/bin/bash")
     bare = {"PATH": f"{copy / 'user' / 'bin'}{os.pathsep}{tools}", "CC": "/nonexistent"}
@@ -203,7 +203,7 @@ def wheel(work: Path) -> Iterator[Figure]:
     yield equal("loads in the quickstart's table (N)", sorted(rows), ["100", "200"])
     where = carry_out("python -c 'import tester.machine.control as found; print(found.__file__)'", elsewhere, **bare)
     yield holds("scan", ".py" not in Path(where.text.strip()).suffix, Path(where.text.strip()).name, "compiled")
-    extension = "tests/extension --ignore tests/extension/test_counts.py"  # which counts files of a checkout
+    extension = "tests/extension --ignore tests/extension/test_counts.py"  # it counts files of a checkout
     extended = carry_out(f"python -m pytest -q -p no:cacheprovider {extension}", elsewhere, **bare)
     yield holds("tests of extensions", extended.code == 0, without_warnings(extended.text, 1), "pass")
 
@@ -221,19 +221,19 @@ SAMPLE = ("main", "tests", "ways")
 
 
 def told_only(name: str, value: str) -> Figure:
-    """State a figure of which nothing is asked."""
+    """Return a figure without a limit."""
     return Figure(name, value, "no limit", True)
 
 
 def must(told: Told) -> Told:
-    """Return what was told; raises ValueError with its last lines unless it went well."""
+    """Return the command's result; raises ValueError with its last lines if it failed."""
     if told.code:
         raise ValueError(f"exit {told.code}: {without_warnings(told.text)}")
     return told
 
 
 def interpreter(version: str) -> str | None:
-    """Return the path of an interpreter that starts: on the search path or of pyenv."""
+    """Return the path of a working interpreter: on the search path or from pyenv."""
     pyenv = sorted((Path.home() / ".pyenv" / "versions").glob(f"{version}.*/bin/python3"))
     for found in (*map(str, pyenv), shutil.which(f"python{version}")):
         if found and carry_out(f"{found} -c 'import venv, ssl'", Path.cwd()).code == 0:
@@ -248,5 +248,5 @@ def digests(wheel: Path) -> dict[str, str]:
 
 
 def differing(one: dict[str, str], other: dict[str, str]) -> list[str]:
-    """Return the names of the files that are not the same in both."""
+    """Return the names of the files that differ."""
     return sorted(name for name in one.keys() | other.keys() if one.get(name) != other.get(name))

@@ -1,1 +1,1 @@
-"""Nonsense for every key of a rig file: is it refused, or does no harm follow from it?"""
+"""Nonsense for every key of a rig file: is it refused, or harmless?"""

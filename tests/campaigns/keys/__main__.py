@@ -1,8 +1,8 @@
 """`python -m tests.campaigns.keys [--sample] [--seed N] [--jobs N]`: nonsense for every key of a real rig's file.
 
-Draws values over all keys of the packaged rigs, as in the file of a real machine: each is refused there, or runs at the
-limits whose control believes it do no harm, on a machine that is as packaged, without a fault and with faults. By
-`--set` only what is free is accepted, and what is tighter. Prints a line a figure; exit status 1 where one misses.
+Draws values over all keys of the packaged rigs, as in the file of a real machine: each is refused there, or does no
+harm: runs at the limits, with control believing the value, on a machine as packaged, without a fault and with faults.
+`--set` accepts only free keys and tighter values. Prints a line a figure; exit status 1 where one misses.
 """
 
 from __future__ import annotations
@@ -33,7 +33,7 @@ def overridable(nonsense: Nonsense) -> bool:
 
 
 def figures(values: list[Nonsense], runs: int, cases: int, jobs: int) -> Iterator[Figure]:
-    """Yield what became of all values; ``runs``: how many of those that a file may have are tried in runs."""
+    """Yield the results of all values; ``runs``: how many of those that a file may have are tried in runs."""
     refusals = [(one, one.in_file()) for one in values]
     yield at_least("nonsense values over all keys", len(values), ASKED_FOR)
     unplaced = [f"{one.text}: {said}" for one, said in refusals if said and not re.search(r"yaml:(?!1:1:)\d+:", said)]
@@ -55,7 +55,7 @@ def figures(values: list[Nonsense], runs: int, cases: int, jobs: int) -> Iterato
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.keys", description=(__doc__ or "").partition("\n")[2])
     parser.add_argument("--sample", action="store_true", help="the short form, for every change")
     parser.add_argument("--values", type=int, metavar="N", help=f"values to draw (default {VALUES})")

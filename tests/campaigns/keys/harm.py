@@ -1,4 +1,4 @@
-"""Runs at the limits whose control has a nonsense value in its rig file, on a machine that is as packaged."""
+"""Runs at the limits: control has a nonsense value in its rig file, the machine is as packaged."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Tried:
 
 
 def tried(accepted: Iterable[Nonsense], cases: int, jobs: int) -> Iterator[Tried]:
-    """Yield what follows from each value; ``cases``: faults that begin in a run with it."""
+    """Yield the result of each value; ``cases``: faults that begin in a run with it."""
     work = [(one, cases) for one in accepted]
     if jobs == 1:
         yield from map(_try, work)
@@ -61,7 +61,7 @@ def _try(work: tuple[Nonsense, int]) -> Tried:
 
 
 def _faulty(recipe: str, moments: list[Moment], cases: int, believed: tuple[str, ...]) -> list[Verdict]:
-    """Return what comes of faults that begin at moments of such a run."""
+    """Return the harm from faults that begin at moments of such a run."""
     wheel = recipe == limits.SHORT_CORNER
     faults = limits.faults() if wheel else [name for name in track.FAULTS if track.fits(recipe, name)]
     by_moment: dict[Moment, list[tuple[str, ...]]] = {}

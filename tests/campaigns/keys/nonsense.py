@@ -1,4 +1,4 @@
-"""Nonsense values of keys, drawn by seed, and what a real rig's file and `--set` answer to them."""
+"""Nonsense values of keys, drawn by seed, and the response of a real rig's file and of `--set`."""
 
 from __future__ import annotations
 
@@ -27,13 +27,13 @@ from tester.machine.commission.record import DONE, CommissionRecord, record_path
 from tester.run.preconditions import unmeasured
 
 RIGS = ("sim", "grosch", "pin-on-disc")
-"""The packaged rigs whose keys are tried."""
+"""The packaged rigs whose keys are used."""
 SHARES = (2, 1, 1)
-"""The wheel has as many turns as the two tracks."""
+"""The wheel appears as often as the two tracks together."""
 OTHER_MAKER = 0x123
 """Vendor of the drives of a real rig."""
 FACTORS = (0.0, -1.0, 1e-6, 1e-4, 1e-2, 0.1, 10.0, 1e2, 1e4, 1e6)
-"""What a number is multiplied by; one that is 0 counts as 1."""
+"""Factors of a number; 0 counts as 1."""
 NUMBERS = (inf, nan, 1e9)
 """Further nonsense in place of a number."""
 TEXTS = ("nonsense", "", "sim")
@@ -42,7 +42,7 @@ TEXTS = ("nonsense", "", "sim")
 
 @dataclass(frozen=True, slots=True)
 class Nonsense:
-    """A value for a key of the real rig that is like a packaged one."""
+    """A value for a key of the real rig that resembles a packaged one."""
 
     rig: str
     key: RigKey
@@ -63,13 +63,13 @@ class Nonsense:
         return type(self.key.classes[0]).__name__.lower()
 
     def in_file(self) -> str:
-        """Return why the file of a real rig is refused with the value in it, "" where it is accepted."""
+        """Return why the file of a real rig with the value is refused, "" if it is accepted."""
         tree = _tree(self.rig)
         _put(tree, self.place, self.value)
         return _refusal(self.rig, tree)
 
     def at_start(self) -> str:
-        """Return why a run does not start with a file that is accepted, commissioned as it was before; "" else."""
+        """Return why a run does not start with an accepted file and the earlier commissioning; "" if it starts."""
         tree = _tree(self.rig)
         _put(tree, self.place, self.value)
         with TemporaryDirectory(prefix="keys-") as folder:
@@ -77,12 +77,12 @@ class Nonsense:
             return unmeasured(load(type(_real(self.rig)[1]), tree), Path(folder))
 
     def by_override(self) -> str:
-        """Return why ``--set``, or a client's override, is refused on a real rig, "" where it is accepted."""
+        """Return why ``--set``, or a client's override, is refused on a real rig, "" if it is accepted."""
         return _refusal(self.rig, _tree(self.rig), self.text)
 
 
 def drawn(count: int, seed: int) -> Iterator[Nonsense]:
-    """Yield nonsense: every key of every rig is as likely, those that only a simulated machine uses are left out."""
+    """Yield nonsense: every key of every rig is equally likely, except keys that only a simulated machine uses."""
     random = Random(f"nonsense {seed}")
     while count:
         (rig,) = random.choices(RIGS, SHARES)
@@ -95,11 +95,11 @@ def drawn(count: int, seed: int) -> Iterator[Nonsense]:
 
 @cache
 def keys(rig: str) -> tuple[tuple[RigKey, Place, Any], ...]:
-    """Return every key that a real rig like a packaged one has, with its place and its value."""
+    """Return every key of a real rig that resembles a packaged one, with its place and its value."""
     return tuple(
         (key, place, value)
         for key, place, value in values_of(_real(rig)[1])
-        if NOT_REAL not in key.classes and place != ("kind",)  # another kind's name: another reader of the file
+        if NOT_REAL not in key.classes and place != ("kind",)  # another kind's name selects another reader of the file
     )
 
 
@@ -130,7 +130,7 @@ def _put(tree: Tree, place: Place, value: Any) -> None:
 
 
 def _commission(name: str, runs: Path) -> None:
-    """Put the required steps of commissioning on record, as they were done with the file before."""
+    """Record the required steps of commissioning as done with the earlier file."""
     rig = _real(name)[1]
     part = kinds.find(rig.kind).commissions
     record = CommissionRecord(record_path(runs, rig.name), clock.utc_now, "the builder")
@@ -148,13 +148,13 @@ def _refusal(rig: str, tree: Tree, *overrides: str) -> str:
 
 
 def _tree(rig: str) -> Tree:
-    """Return the file of a real rig, as data that may be changed."""
+    """Return the file of a real rig as mutable data."""
     return deepcopy(_real(rig)[0])
 
 
 @cache
 def _real(rig: str) -> tuple[Tree, Rig]:
-    """Return the file of a real rig that is like a packaged one, and the rig."""
+    """Return the file of a real rig that resembles a packaged one, and the rig."""
     packaged = load_rig(rig)
     tree = new_tree(type(packaged), rig)
     data: Any = tree.data
