@@ -1,7 +1,8 @@
-"""Lives of wheels whose compound wears unlike what the rig file believes, drawn by seed, for ``tests.campaigns.wear``.
+"""Lives of wheels whose compound wears differently from the rig file's belief, drawn by seed, for
+``tests.campaigns.wear``.
 
-A life is one wheel from full size to its least diameter, or to the end of its recipe. Its rubber wears by 0.02 to
-0.6 mm3/(N m) where 0.08 is believed, relaxes and softens, and grows with heat by another amount than believed.
+A life is one wheel from full size to its least diameter, or to the end of its recipe. Its rubber wears by 0.02 to 0.6
+mm3/(N m) where 0.08 is believed, relaxes and softens, and its growth with heat differs from the belief.
 """
 
 from __future__ import annotations
@@ -36,20 +37,20 @@ from tests.tester.inputs.recipe.texts import load_recipe
 LIVES, SAMPLE_LIVES = 60, 1
 RUBBER_LAYER_MM: Final = 8.0
 RUBBER_EXPANSION: Final = (0.0029 / (2.0 * RUBBER_LAYER_MM), 0.0087 / (2.0 * RUBBER_LAYER_MM))
-"""Radial expansion of the layer, 1/K: the range of the rubber's part of the growth of the diameter, 0.0029 to
-0.0087 mm/K, that ``wear.growth_uncertainty`` stands for (sim/rig.yaml)."""
+"""Radial expansion of the layer, 1/K: the range of the rubber's part of the growth of the diameter, 0.0029 to 0.0087
+mm/K, that ``wear.growth_uncertainty`` covers (sim/rig.yaml)."""
 COMPOUNDS: Final = ("1#", "2#", "3#")
 SLOWEST, FASTEST = 0.02, 0.6
 """Range of the wear rate, mm3/(N m), drawn evenly by its logarithm."""
 BELIEVED: Final = 0.08
 FLAGGED: Final = 0.05
-"""Greatest share of repeats that may be flagged."""
+"""Maximum share of flagged repeats."""
 LEARNT: Final = 0.2
-"""The rate has to be known to this share before half of a life."""
+"""The rate must be known to this share before half of a life."""
 WHOLE_MM: Final = 3.0
 """A wheel that has lost less by the end of its recipe has not lived half of a life: its rate is judged at the end."""
 LEFT_MM: Final = 2.0
-"""Diameter above the least one that a wheel may have when a new one is asked for [A]: a condition at 400 N."""
+"""Maximum diameter above a wheel's least diameter when a new wheel is requested [A]: a condition at 400 N."""
 LONGEST_S: Final = 30_000.0
 RIG: Final = RigConfig.of(load_rig("sim", ()))
 RECIPE = """recipe: a wheel's life
@@ -73,7 +74,7 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """What a seed has drawn: the rubber, and the recipe."""
+    """The draw of a seed: the rubber, and the recipe."""
 
     seed: int
     rate: float
@@ -84,7 +85,7 @@ class Life:
 
 @dataclass(slots=True)
 class Lived:
-    """What became of a life."""
+    """The result of a life."""
 
     life: Life
     ended: str = ""
@@ -92,20 +93,20 @@ class Lived:
     least_mm: float = inf
     lost_mm: float = 0.0
     left_mm: float = nan
-    """True diameter above the least one when a new wheel was asked for; NaN where none was."""
+    """True diameter above the least one when a new wheel was requested; NaN if none was."""
     valid: int = 0
     flagged: int = 0
     off: list[str] = field(default_factory=list)
-    """Valid repeats without a flag whose slip was off by more than is allowed."""
+    """Valid repeats without a flag whose slip error exceeded the allowed one."""
     worst: float = 0.0
-    """Greatest error of a slip as a share of what is allowed."""
+    """Greatest slip error as a share of the allowed one."""
     rate: float = nan
-    """Rate in use when half of the life was over; in the end of a short life."""
+    """Rate in use when half of the life was over, or at the end of a short life."""
     reported: bool = False
 
     @property
     def learnt(self) -> bool:
-        """Tell whether the rate was known by then."""
+        """Return whether the rate was known by then."""
         return abs(self.rate / self.life.rate - 1.0) <= LEARNT
 
 
@@ -121,7 +122,7 @@ def _drawn(at: Random, seed: int, *, short: bool) -> Life:
     rate = exp(at.uniform(log(SLOWEST), log(FASTEST)))
     relaxing, softening = at.uniform(0.0, 1.0), at.uniform(0.0, 1.0)
     ground, slip = at.uniform(150.0, 400.0), at.uniform(0.15, 0.4)
-    # A compound that wears slowly is ground for longer: its life would be without an end otherwise.
+    # A compound that wears slowly is ground for longer: otherwise its life would never end.
     ground_mm = at.uniform(1.0, 2.0 if short else 8.0)
     minutes = min(max(ground_mm * 4241.0 / (rate * ground * slip * 60.0), 3.0), 60.0)
     loads = sorted(at.sample(range(100, 401, 50), 2 if short else 3), key=lambda _: at.random())
@@ -147,7 +148,7 @@ def _axis(values: Iterable[float], unit: str) -> str:
 
 
 class Kept(NullRecorder):
-    """Keeps a run's repeats by key, its trips, and what it reports of wear."""
+    """Stores a run's repeats by key, its trips, and its reports of wear."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -158,19 +159,19 @@ class Kept(NullRecorder):
     def commit_repeat(
         self, key: int, result: RepeatResult, bursts: Iterable[Burst] = (), judged: Judged | None = None
     ) -> Ticket:
-        """Keep a repeat."""
+        """Store a repeat."""
         self.repeats[key] = result
         return Ticket(done=True)
 
     def trip(
         self, t_s: float, interlock: str, text: str, value: float = nan, limit: float = nan, unit: str = ""
     ) -> int:
-        """Keep a trip."""
+        """Store a trip."""
         self.trips.append(f"{interlock} at {t_s:.0f} s")
         return len(self.trips)
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
-        """Keep what is reported of wear."""
+        """Store a report of wear."""
         if kind == "wear":
             self.wear.append(text)
 
@@ -193,7 +194,7 @@ class Living:
         """True loss of diameter, mm, and the rate in use."""
 
     def to_the_end(self) -> Lived:
-        """Tick until the run has ended, or a second wheel is mounted."""
+        """Tick until the run ends, or a second wheel is mounted."""
         run, lived, plant, ctx = self.run, self.lived, self.world.plant, self.run.engine.ctx
         new_mm, now, cold_mm = ctx.wheel.installed_mm, 0.0, plant.cold_mm
         while not run.finished and now < LONGEST_S and ctx.wheel.wheel < 2:
@@ -241,12 +242,12 @@ class Living:
 
 
 def live(life: Life) -> Lived:
-    """Live a life on the simulated rig."""
+    """Run a life on the simulated rig."""
     return Living(life).to_the_end()
 
 
 def told(lived: Lived) -> str:
-    """Return a life in a line."""
+    """Return a life as one line."""
     life = lived.life
     what = lived.ended or ("to the least diameter" if lived.left_mm == lived.left_mm else "to the end of its recipe")
     return (

@@ -1,6 +1,6 @@
-"""`python -m tests.campaigns.liars [--sample] [--jobs N]`: temperature sensors that lie, and honest heats.
+"""`python -m tests.campaigns.liars [--sample] [--jobs N]`: lying temperature sensors, and honest heats.
 
-Twins differ from the rig file in air, heater, hub, rubber and friction, as a seed draws it. Each heats a wheel to the
+Twins differ from the rig file in air, heater, hub, rubber and friction, drawn by seed. Each heats a wheel to the
 hottest temperature that `tester check` accepts. The hub's sensor drifts or has another gain, alone, with the
 thermometer, or beside a relay that is shorted or sticks: the true hub must stay below harm, except in the rows of
 ``docs/hardware-magnitudes.csv``. Honest heats in air of 10 to 40 degC must not trip. Prints a line a figure, and the
@@ -28,7 +28,7 @@ from tests.campaigns.liars.kiln import HONEST, SHORTED, STICKS, Heated, Kiln, Li
 
 CASES, HEATS, SAMPLE_CASES, SAMPLE_HEATS = 400, 200, 24, 8
 AIR_C, NEAR_AIR_K = (10.0, 40.0), 5.0
-"""Air of an honest heat, and how far it is off the file's at most where a sensor lies."""
+"""Air of an honest heat, and its maximum difference from the file's in heats with a lying sensor."""
 UNLIKE = {
     "hub_capacity": 0.05, "jacket_power": 0.05, "conductivity": 0.05, "film_rotating": 0.1, "film_sides": 0.1,
     "hub_to_shaft": 0.2, "hub_to_rubber": 0.1,
@@ -39,24 +39,23 @@ MOST_K_MIN, SLOW_K_MIN, MOST_PERCENT = 10.0, (0.05, 1.0), 20.0
 SLOW_SHARE = 0.4
 """Share of the drifts that are slow."""
 HOT_S, HEAT_S, ASTRAY_K, LONGEST_S = 900.0, 1500.0, 35.0, 7200.0
-"""Time from which some drifts begin; length of a heat; error until which a drift is watched, K; the longest heat."""
+"""Earliest beginning of some drifts; length of a heat; error up to which a drift is watched, K; the longest heat."""
 EXTREMES: tuple[dict[str, float], ...] = (
     {}, {"hub_capacity": 0.95, "hub_to_shaft": 1.2}, {"hub_capacity": 0.95, "jacket_power": 1.05},
 )  # fmt: skip
-"""Twins that the table's bounds are computed on: as the file, and those that hide the most heat, at the ends of
-UNLIKE."""
+"""Twins for the table's bounds: as the file, and those that hide the most heat, at the ends of UNLIKE."""
 NO_HISTORY = "without a history"
 """Column ``only`` of the table."""
 NAMES = {
     (False, False): "hub sensor gain", (False, True): "common temperature supply gain",
     (True, False): "hub sensor drift", (True, True): "common temperature supply drift",
 }  # fmt: skip
-"""The catalogue's phrase of (drifts, common)."""
+"""The catalogue's phrase by (drifts, common)."""
 
 
 @dataclass(frozen=True, slots=True)
 class Order:
-    """One heat to be made; ``lie`` is HONEST in an honest one."""
+    """One heat to make; ``lie`` is HONEST in an honest one."""
 
     twin: Twin
     lie: Lie
@@ -64,7 +63,7 @@ class Order:
 
     @property
     def text(self) -> str:
-        """Return it in words."""
+        """Return it as text."""
         lie, words = self.lie, f"{self.twin.compound}, air {self.twin.air_c:.1f} degC, seed {self.twin.seed}"
         if lie is HONEST:
             return words
@@ -81,7 +80,7 @@ def value_of(lie: Lie) -> float:
 
 
 def listed(lie: Lie) -> bool:
-    """Tell whether the written table of hardware lists this lie, on a rig with a history."""
+    """Return whether the written table of hardware lists this lie, on a rig with a history."""
     name, value = NAMES[bool(lie.k_min), lie.common], value_of(lie)
     return any(row.fault == name and row.least <= value <= row.most for row in written() if not row.only)
 
@@ -117,7 +116,7 @@ def lie_of(number: int) -> Lie:
     slow, drifts = rng.random() < SLOW_SHARE, number % 2 == 0
     k_min = rng.choice((-1.0, 1.0)) * rng.uniform(*SLOW_K_MIN) if slow else rng.uniform(-MOST_K_MIN, MOST_K_MIN)
     percent = 100.0 + rng.uniform(-MOST_PERCENT, MOST_PERCENT)
-    # A gain that changes in the heat is a jump, which "hub sensor jump" reports at once.
+    # A gain that changes during the heat is a jump, which "hub sensor jump" reports at once.
     at_s = HOT_S if drifts and rng.random() < 0.5 else 0.0
     relay = rng.choice(("", "", SHORTED, STICKS))
     relay_s = at_s + rng.uniform(0.0, HEAT_S)
@@ -132,13 +131,13 @@ def seconds_of(lie: Lie) -> float:
 
 
 def orders(cases: int, heats: int) -> list[Order]:
-    """Return every heat to be made."""
+    """Return every heat to make."""
     made = [Order(near(twin_of(number)), lie, seconds_of(lie)) for number in range(cases) for lie in (lie_of(number),)]
     return made + [Order(twin_of(number), HONEST, HEAT_S) for number in range(heats)]
 
 
 def known(twin: Twin) -> KnownRatio:
-    """Return what the rig knows of its heat from earlier heatings in the file's air."""
+    """Return the rig's knowledge of its heat from earlier heatings in the file's air."""
     earlier = replace(twin, air_c=rig().ambient_c, seed=-1)
     return history(rig(), Kiln(rig(), earlier, hottest_c()).heat(HONEST, HOT_S).ratio)
 
@@ -153,7 +152,7 @@ def carry_out(order: Order) -> tuple[Heated, ...]:
 
 @dataclass(frozen=True, slots=True)
 class Bound:
-    """The magnitudes of a lie that harm, of those tried on every twin of EXTREMES; none: (inf, -inf)."""
+    """The harmful magnitudes of a lie, of those tried on every twin of EXTREMES; none: (inf, -inf)."""
 
     fault: str
     only: str
@@ -179,7 +178,7 @@ class Bound:
 
     @property
     def text(self) -> str:
-        """Return it in a line."""
+        """Return it as one line."""
         words = f"{self.fault}, {self.only or 'with a history'}: "
         words += f"{self.least:g} to {self.most:g}, hub {self.hub_c:.0f} degC" if self.harms else "none harms"
         row = self.row
@@ -187,7 +186,7 @@ class Bound:
 
 
 def bounds(jobs: int) -> Iterable[Bound]:
-    """Yield the magnitudes of each lie that harm, with and without a history."""
+    """Yield the harmful magnitudes of each lie, with and without a history."""
     wanted = [(drifts, common, only) for drifts, common in NAMES for only in ("", NO_HISTORY)]
     with ProcessPoolExecutor(jobs) as pool:
         yield from pool.map(_bound, wanted)
@@ -233,7 +232,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def table(jobs: int) -> int:
-    """Print the bounds of the written table as computed; return 1 where the table has others."""
+    """Print the computed bounds of the written table; return 1 if the table differs."""
     found = list(bounds(jobs))
     for one in found:
         print(f"{'ok  ' if one.agrees else 'MISS'} {one.text}")
@@ -241,7 +240,7 @@ def table(jobs: int) -> int:
 
 
 def line(order: Order, heat: Heated) -> str:
-    """Return a heat in a line."""
+    """Return a heat as one line."""
     end = f"{heat.trip} at {heat.at_s:.0f} s" if heat.trip else "no trip"
     return f"{order.text}: hub {heat.hub_c:.1f} degC, surface {heat.surface_c:.1f} degC, {end}"
 
@@ -263,7 +262,7 @@ def judged(found: Sequence[tuple[Order, tuple[Heated, ...]]]) -> int:
 
 
 def figure(name: str, count: int, of: int, missed: Sequence[tuple[Order, Heated]]) -> None:
-    """Print one figure, and what has missed it."""
+    """Print one figure, and its misses."""
     print(f"{'MISS' if missed else 'ok  '} {name}: {count} of {of} (asked: 0)")
     for order, heat in missed:
         print(f"       {line(order, heat)}")

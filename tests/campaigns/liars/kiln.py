@@ -30,16 +30,16 @@ LOAD_N, ROLLING_M_S, SLIP_M_S = 200.0, 0.8, 0.3
 BURST_S, BURST_EVERY_S, MU = 4.0, 60.0, {"1#": 0.8, "2#": 1.0, "3#": 1.3}
 """Length and period of bursts, s, and a coefficient of each compound [A]."""
 WITHIN_K = 2.0
-"""A surface this near to its target is hot: bursts begin."""
+"""A surface this near to its target counts as hot: bursts begin."""
 AFTER_S = 60.0
-"""Time after a trip in which the hub may still get hotter, s."""
+"""Time after a trip during which the hub may still get hotter, s."""
 SHORTED, STICKS = "relay shorted", "relay sticks"
 STICKS_S = 3.0
 
 
 @dataclass(frozen=True, slots=True)
 class Lie:
-    """The hub sensor's error, with the thermometer's where both lie alike, and the relay's.
+    """The hub sensor's error (the thermometer's too if both lie alike), and the relay's fault.
 
     ``percent``: gain; ``k_min``: drift, K/min; each from ``at_s``, s. ``relay``: "" or a fault from ``relay_s`` on.
     """
@@ -57,7 +57,7 @@ HONEST = Lie()
 
 @dataclass(frozen=True, slots=True)
 class Twin:
-    """A rig that is unlike its file: shares of the parameters that the file states, air in degC, and a seed."""
+    """A rig that differs from its file: shares of the file's parameters, air in degC, and a seed."""
 
     compound: str
     air_c: float
@@ -68,7 +68,7 @@ class Twin:
 
 @dataclass(frozen=True, slots=True)
 class Heated:
-    """What came of a heat: the hottest true hub and surface, degC, what tripped and when, s, and its heat ratio."""
+    """The result of a heat: the hottest true hub and surface, degC, what tripped and when, s, and its heat ratio."""
 
     hub_c: float
     surface_c: float
@@ -76,14 +76,14 @@ class Heated:
     at_s: float
     ratio: float
     hot_s: float
-    """When the surface was hot, s; infinite where it never was."""
+    """When the surface was hot, s; infinite if it never was."""
 
 
 class Kiln:
     """One heat to a surface temperature, and its rig."""
 
     def __init__(self, rig: RigConfig, twin: Twin, surface_c: float, known: KnownRatio | None = None) -> None:
-        """``rig``: as its file states it; ``known``: the history of its heatings."""
+        """``rig``: as in its file; ``known``: the history of its heatings."""
         self.twin, self.target_c = twin, surface_c - rig.loops.heat.rolling_offset_k
         bounds = rig_bounds(rig)
         control = WheelControl(rig, replace(bounds, hub_c=min(bounds.hub_c, hub_needed_c(rig, surface_c))))
@@ -126,7 +126,7 @@ class Kiln:
         bench.demand.press, bench.demand.load_n = Press.LOAD, LOAD_N
 
     def heat(self, lie: Lie, until_s: float) -> Heated:
-        """Heat until a trip, or for so long; return what came of it."""
+        """Heat until a trip, or for so long; return the result."""
         bench, state = self.bench, self.state
         bench.demand.surface_c = self.target_c
         balance = bench.control.view.heat
@@ -192,5 +192,5 @@ class Kiln:
 
 
 def history(rig: RigConfig, ratio: float) -> KnownRatio:
-    """Return what a rig knows after three heatings with this ratio of heat put in to heat shown."""
+    """Return a rig's knowledge after three heatings with this ratio of heat put in to heat shown."""
     return known_from(FIRST * [ratio], rig)

@@ -1,4 +1,4 @@
-"""Lies that are drawn, and the heat that they are tried in (``python -m tests.campaigns.liars``)."""
+"""Drawn lies, and the heats with them (``python -m tests.campaigns.liars``)."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""Slaves built from makers' register tables, by another hand than the profiles', and our drivers beside them."""
+"""Slaves built from makers' register tables, independently of the profiles, and our drivers connected to them."""

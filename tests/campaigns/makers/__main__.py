@@ -1,12 +1,11 @@
 """`python -m tests.campaigns.makers [--sample] [--seed N]`: do the profiles fit the makers' register tables?
 
-Each device is a slave built from its maker's table alone, by another hand than its profile; modbus_tk serves it.
-Numbers drawn over the whole range of every channel must be read within one step of the register. Each write must arrive
-as the table wants it. What the table forbids must be refused by name: values out of range, exceptions 1 to 3; while a
-device fails or is busy (4, 6) nothing is believed. No number is believed in any fault of the table, nor of a device
-that is silent; all are, once it is over. A device that begins anew, and missed a reply, is set up again. A frequency
-inverter on CAN, from the pages of five makers, is judged alike.
-Prints a line a figure; exit status 1 where one misses.
+Each device is a slave built from its maker's table alone, independently of its profile; modbus_tk serves it. Numbers
+drawn over the whole range of every channel must read within one step of the register. Each write must arrive as the
+table requires. What the table forbids must be refused by name: values out of range, exceptions 1 to 3; while a device
+fails or is busy (4, 6) no number is valid. No number is valid during any fault of the table, or while a device is
+silent; all are valid afterwards. A device that restarts and misses a reply is set up again. A frequency inverter on
+CAN, from the pages of five makers, is judged in the same way. Prints a line a figure; exit status 1 where one misses.
 """
 
 from __future__ import annotations

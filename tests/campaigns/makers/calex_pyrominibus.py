@@ -1,6 +1,6 @@
 """Calex PyroMiniBus thermometer (PMB21): operator's manual p. 7. Temperatures are in tenths of degC, signed.
 
-Emissivity is in 1/10000, at 0x07 kept without power, at 0x17 not.
+Emissivity is in 1/10000; 0x07 is non-volatile, 0x17 is not.
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """Calex PyroUSB thermometer (PUA8): manual p. 11 and 12. Temperatures are in tenths of degC, signed.
 
-Emissivity is in 1/10000, at 0x08 kept without power, at 0x18 not.
+Emissivity is in 1/10000; 0x08 is non-volatile, 0x18 is not.
 """
 
 from __future__ import annotations

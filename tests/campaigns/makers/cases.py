@@ -1,4 +1,4 @@
-"""Cases of one device: what our driver makes of its numbers, writes, refusals and faults."""
+"""Cases of one device: our driver's handling of its numbers, writes, refusals and faults."""
 
 from __future__ import annotations
 
@@ -14,9 +14,9 @@ from tests.campaigns.makers.seat import NAMED, PASSING, READS, WRITES, Driver, P
 SET_UP_S = 3.0
 """Time for the set-up and a few readings, s."""
 LOSS_S = 3.0
-"""Time after which a silent device is lost, with its retries, s."""
+"""Time after which a silent device counts as lost, including retries, s."""
 LEAST_BEYOND = 0.01
-"""Share of a range by which a value is at least beyond it."""
+"""Minimum distance of a value beyond its range, as a share of the range."""
 
 
 class Cases:
@@ -56,13 +56,13 @@ class Cases:
         return dict(zip(driver.channels, driver.raw, strict=True))
 
     def _believed(self, seat: Seat) -> bool:
-        """Return whether the rest of the program takes the driver's numbers for good."""
+        """Return whether the rest of the program takes the driver's numbers as valid."""
         assert isinstance(seat.driver, Sensor)
         return seat.driver.fresh(seat.now)
 
     @contextmanager
     def _seat(self, parameters: Mapping[str, float] = {}, ready: bool = True) -> Iterator[Seat]:
-        """Power the device up with numbers that are drawn, and connect the driver; ``ready``: wait until it reads."""
+        """Power the device up with drawn numbers, and connect the driver; ``ready``: wait until it reads."""
         self.place.slave.power_up()
         self.place.measure(self.source, self._bounds, inside=True)
         with self.place.seat(lambda link: self._driver(link, parameters)) as seat:
@@ -72,11 +72,11 @@ class Cases:
             yield seat
 
     def _settle(self, seat: Seat) -> None:
-        """Let every block be read twice, with its latency."""
+        """Let the driver read every block twice, with its latency."""
         seat.run(2.5 * self.period_s + 0.1)
 
     def _bounds(self, channel: str) -> tuple[float, float]:
-        """Return the values between which the profile believes a channel."""
+        """Return the bounds within which the profile accepts a channel."""
         signal, share = self.profile.signal(channel), self.profile.saturated
         edge = signal.greatest if share is None else share * signal.greatest - signal.scale
         return max(signal.least, -edge) if share is not None else signal.least, edge
@@ -84,7 +84,7 @@ class Cases:
     # cases -------------------------------------------------------------------------------------------------------
 
     def _compare(self, seat: Seat, kind: str, when: str) -> None:
-        """Compare each channel with the device; what is within the profile's bounds must be believed, and no more."""
+        """Compare each channel with the device; values within the profile's bounds must be valid, and no others."""
         plausible, beyond = True, False
         for channel, value in self._numbers(seat.driver).items():
             if channel not in self.place.table.shown:
@@ -113,7 +113,7 @@ class Cases:
                 self._compare(seat, "read", "measured")
 
     def _write(self, name: str) -> None:
-        """Write a parameter that is drawn over the maker's range."""
+        """Write a parameter drawn over the maker's range."""
         register, factor = self.place.table[self.place.table.parameters[name][0]], self.place.table.parameters[name][1]
         value = self.source.choice([register.least, register.greatest, *self._drawn(register.least, register.greatest)])
         refusals = [self._refusal(name, asked * factor) for asked in (register.least, register.greatest, value)]
@@ -141,7 +141,7 @@ class Cases:
                 self._exception(code, WRITES)
 
     def _refuse_value(self, name: str, register_name: str, factor: float) -> None:
-        """Ask for values outside the maker's range, and for one that this very device does not take."""
+        """Write values outside the maker's range, and one that this particular device does not accept."""
         register = self.place.table[register_name]
         width = register.greatest - register.least
         drawn = self.source.uniform(LEAST_BEYOND, 1.0)
@@ -159,7 +159,7 @@ class Cases:
                 self._judge("refuse", right, f"{name} {value:g}, which the device does not take: {told!r}")
 
     def _refusal(self, name: str, value: float) -> str:
-        """Return why the driver refuses a value, "" if it takes it."""
+        """Return why the driver refuses a value, "" if it accepts it."""
         try:
             self._driver(ModbusLink(), {name: value})
         except ValueError as error:
@@ -182,7 +182,7 @@ class Cases:
             self._compare(seat, "refuse", f"{what}, over")
 
     def _faults(self) -> None:
-        """Show each fault of the table, and what looks like one, between good numbers."""
+        """Show each fault of the table, and each lookalike, between good numbers."""
         with self._seat() as seat:
             for state in (*self.place.table.faults, *self.place.table.harmless):
                 before = {name: self.place.slave.get(name) for name in state.values}
@@ -200,7 +200,7 @@ class Cases:
                 self._compare(seat, "fault", f"{state.name}, over")
 
     def _silence(self) -> None:
-        """Let the device fall silent, and come back with other numbers."""
+        """Let the device go silent, and return with other numbers."""
         with self._seat() as seat:
             self.place.slave.silent = True
             seat.run(LOSS_S + 4.0 * self.period_s)
@@ -214,7 +214,7 @@ class Cases:
 
 
     def _restart(self) -> None:
-        """Let the device begin anew, silent for a time that is drawn: a driver that missed a reply sets it up again."""
+        """Let the device restart, silent for a drawn time: a driver that missed a reply sets it up again."""
         with self._seat(self._ordinary()) as seat:
             timeouts = seat.driver.station.counters.timeouts
             self.place.slave.silent = True
@@ -238,7 +238,7 @@ class Cases:
         }
 
     def _holds(self) -> dict[str, float]:
-        """Return what registers hold once the device is set up with ordinary parameters."""
+        """Return the register values after a set-up with ordinary parameters."""
         table = self.place.table
         return dict(table.wanted) | {
             register: 0.25 * table[register].least + 0.75 * table[register].greatest

@@ -12,9 +12,9 @@ from tests.campaigns.makers.cases import SET_UP_S, Cases
 from tests.campaigns.makers.seat import Driver, Seat, narrowed, placed
 
 STOPPED = "stopped"
-"""A controller that can be stopped has this number, 1 while it is."""
+"""A controller that can be stopped has this number; it is 1 while stopped."""
 STALE_S = 1.0
-"""Age above which a controller's reading is not believed, s."""
+"""Age above which a controller's reading is not valid, s."""
 
 
 class ControllerCases(Cases):
@@ -80,7 +80,8 @@ class ControllerCases(Cases):
         self._judge("write", abs(held - value) <= rounding, f"{text}: {register_name} {value!r} arrived as {held!r}")
 
     def _refuse_value(self, name: str, register_name: str, factor: float) -> None:
-        """Command beyond the maker's range, what is no number, and what this very device does not take."""
+        """Command values beyond the maker's range, non-numbers, and values that this particular device does not
+        accept."""
         register = self.place.table[register_name]
         bound = register.least
         with self._seat() as seat:

@@ -1,6 +1,6 @@
 """SHT20 temperature and humidity transmitter, as its vendors describe it: two input registers in tenths, signed degC.
 
-It has no register of faults: a sensor that is broken shows in impossible numbers.
+It has no fault register: a broken sensor shows impossible numbers.
 """
 
 from __future__ import annotations

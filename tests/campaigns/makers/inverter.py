@@ -1,4 +1,4 @@
-"""A frequency inverter on CAN, byte by byte from its makers' pages, with nothing of our own dictionary.
+"""A frequency inverter on CAN, byte by byte from its makers' pages, without our own dictionary.
 
 Pages: Fuji's FRENIC-Ace user's manual 9-20 to 9-42 (PDO, identity, aborts), WEG's CFW11 CANopen manual 32 (types of
 0x6042 to 0x6048), Lenze's i510 manual 177 (ranges of 0x6042 to 0x6049, 0x605A), Toshiba's E6581911 31 and 43 (target
@@ -42,7 +42,7 @@ SHOWN = {"off": 0x0250, "ready": 0x0231, "on": 0x0233, "runs": 0x0237, "stops": 
 
 
 class InverterSlave(FrameByFrame):
-    """The device: ``rpm`` turns, ``mille`` of its rated torque. Frames that it sends wait for ``receive``."""
+    """The device: ``rpm`` turns, ``mille`` of its rated torque. Its frames wait for ``receive``."""
 
     def __init__(self, without: set[int] | None = None, most: dict[tuple[int, int], int] | None = None) -> None:
         """Power it up. ``without``: objects that it lacks; ``most``: greatest values below the table's."""
@@ -66,7 +66,7 @@ class InverterSlave(FrameByFrame):
     # --- wire -----------------------------------------------------------------------------------------------------
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Take a frame of the computer."""
+        """Process a frame from the computer."""
         self._turn(now)
         if can_id == 0 and data[1] in (0, NODE):
             self._network(data[0], now)
@@ -80,7 +80,7 @@ class InverterSlave(FrameByFrame):
             self.heard_s = now
 
     def receive(self, now: float) -> list[CanFrame]:
-        """Return what it has sent."""
+        """Return its frames."""
         self._turn(now)
         beat = self.values[0x1017, 0] / 1000
         if beat and now >= self.beat_s + beat:
@@ -193,7 +193,7 @@ class InverterSlave(FrameByFrame):
             self.state = "off"
 
     def fail(self, code: int, now: float) -> None:
-        """Trip with an error code (CiA 402): it says so by EMCY, and coasts."""
+        """Trip with an error code (CiA 402): it sends EMCY, and coasts."""
         self.state = "fault"
         self.values[0x603F, 0] = code
         self._say(0x80 + NODE, code.to_bytes(2, "little") + b"\x21" + bytes(5), now)

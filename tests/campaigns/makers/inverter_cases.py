@@ -1,4 +1,4 @@
-"""Cases of the profile of frequency inverters at a slave built from makers' pages: read, write, refuse, fault."""
+"""Cases of the profile of frequency inverters with a slave built from makers' pages: read, write, refuse, fault."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ PROFILE = "cia402_inverter"
 SCAN_S = 0.01
 CONNECT_S = 20.0
 NEEDED = (0x6007, 0x6042, 0x6044, 0x6048, 0x6049, 0x604A, 0x605A, 0x605E, 0x6077, 0x1016, 0x6060)
-"""Objects without which an inverter must not turn an axis."""
+"""Mandatory objects of an inverter that turns an axis."""
 RAMPS = ((0x6048, "acceleration"), (0x6049, "deceleration"), (0x604A, "quick_stop_deceleration"))
 
 
@@ -75,7 +75,7 @@ class InverterCases:
         self.source, self.tally, self.profile = source, tally, profile
 
     def conduct(self, rounds: int) -> None:
-        """Conduct every sort of case ``rounds`` times."""
+        """Conduct every kind of case ``rounds`` times."""
         for number in range(rounds):
             self._writes_and_reads()
             self._refusals(NEEDED[number % len(NEEDED)])

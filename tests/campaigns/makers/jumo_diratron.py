@@ -1,8 +1,8 @@
 """JUMO diraTRON controller: interface description 70211000T92Z001K000, p. 16 to 37. Floats with their low word first.
 
 Functions 3 and 4 read the same words. An invalid measured value is shown by the value itself, as 1e37 to 8e37 (p. 24).
-A write to a protected address is refused by exception 8 (p. 23); a measuring range that is left puts the controller
-into manual mode (0x4B2C). Here it starts in manual mode.
+A write to a protected address is refused by exception 8 (p. 23); leaving the measuring range puts the controller into
+manual mode (0x4B2C). Here it starts in manual mode.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ from tests.campaigns.makers.table import Register, State, Table
 AUTOMATIC, MANUAL = 1, 3
 """Controller modes."""
 INVALID = 1e36
-"""Error codes are greater."""
+"""Greater values are error codes."""
 
 
 def react(slave: MakersSlave, written: str) -> None:

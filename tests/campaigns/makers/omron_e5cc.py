@@ -20,7 +20,7 @@ OPERATION_ERROR, DATA_ERROR = 4, 3
 
 
 def forbids(slave: MakersSlave, written: str) -> int:
-    """Refuse writes while communications writing is off, and commands that there are not."""
+    """Refuse writes while communications writing is off, and unknown commands."""
     if written == "command":
         code, related = divmod(int(slave.get("command")), 0x100)
         if code not in STATES or related > 1:

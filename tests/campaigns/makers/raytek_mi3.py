@@ -1,7 +1,7 @@
 """Raytek MI3 thermometer, head 1 on its box: manual Rev. G Nov/2015, p. 97 to 101, and Rev. G2, p. 104.
 
 Floats have their most significant word first. Head parameters are at 1000 times the head's number, counted from 0; the
-status is eight discrete inputs. A value outside its range raises no exception: the box keeps the one it had, and sets
+status is eight discrete inputs. A value outside its range raises no exception: the box keeps the previous one, and sets
 its error code (p. 99). The head calculates with the internal emissivity while its source is "I".
 """
 

@@ -1,4 +1,4 @@
-"""One of our drivers at a maker's slave: its time is counted, and every answer is waited for."""
+"""One of our drivers at a maker's slave: virtual time, every answer awaited."""
 
 from __future__ import annotations
 
@@ -26,9 +26,9 @@ SCAN_S = 0.01
 LOOK_S = 0.05
 """Longest time between two looks for an answer over TCP, s of the wall: a new connection may not be open yet."""
 NAMED = (1, 2, 3)
-"""Exceptions that a driver reports by their number: the device is not what the profile says."""
+"""Exceptions that a driver reports by their number: the device does not match the profile."""
 PASSING = (4, 6)
-"""Exceptions of a device that fails, or is busy, for a time."""
+"""Exceptions of a device that fails or is busy temporarily."""
 READS, WRITES = (1, 2, 3, 4), (5, 6, 15, 16)
 Driver = Sensor | TemperatureController
 Build = Callable[[ModbusLink], Driver]
@@ -36,13 +36,13 @@ Build = Callable[[ModbusLink], Driver]
 
 @dataclass
 class Tally:
-    """What was tried, and what went wrong."""
+    """Counts of cases, and their failures."""
 
     counts: Counter[str] = field(default_factory=Counter[str])
     wrong: list[str] = field(default_factory=list[str])
 
     def judge(self, kind: str, right: bool, text: str) -> None:
-        """Count a case of ``kind``; ``text`` says what is wrong."""
+        """Count a case of ``kind``; ``text``: its failure."""
         self.counts[kind] += 1
         if not right:
             self.wrong.append(f"{kind}: {text}")
@@ -52,7 +52,7 @@ class Seat:
     """A driver on a connection to a slave."""
 
     def __init__(self, slave: MakersSlave, line: TcpLine | SerialEnd, build: Build, link: ModbusLink) -> None:
-        """Build the driver on its link. Raises what its constructor raises."""
+        """Build the driver on its link. Raises the constructor's exceptions."""
         self.slave, self.line, self.link = slave, line, link
         self.driver = build(link)
         self.now = 0.0
@@ -80,16 +80,16 @@ class Seat:
 
 @dataclass
 class Place:
-    """A table's slave, with all that a campaign's cases need."""
+    """A table's slave, with everything that a campaign's cases need."""
 
     table: Table
     slave: MakersSlave
     port: int
-    """Of TCP; 0 = it is at a serial line."""
+    """TCP port; 0 = serial line."""
 
     @contextmanager
     def seat(self, build: Build) -> Iterator[Seat]:
-        """Put a driver to the slave, over a new connection."""
+        """Connect a driver to the slave, over a new connection."""
         line = open_tcp_line("127.0.0.1", self.port, PATIENCE_S) if self.port else SerialEnd(self.slave)
         settings = load_profile(self.table.profile).line
         link = ModbusLink(self.table.framing, settings.baud, settings.parity, settings.stop_bits)
@@ -118,7 +118,7 @@ class Place:
             self.slave.put(name, float(np.float32(drawn)))
 
     def truth(self, channel: str) -> tuple[float, float]:
-        """Return what the device shows, in the channel's unit, and a step of an f32, or half a count."""
+        """Return the device's number in the channel's unit, and a step of an f32, or half a count."""
         name, factor = self.table.shown[channel]
         value = self.slave.get(name)
         step = float(np.spacing(np.float32(abs(value)))) if self.table[name].type == "f32" else 0.5
@@ -137,7 +137,7 @@ def placed(table: Table) -> Iterator[Place]:
 
 
 def narrowed(table: Table, name: str, greatest: float) -> Table:
-    """Return the table of a device that takes less than its maker's table says in a register."""
+    """Return the table of a device that accepts less in a register than its maker's table states."""
     return replace(
         table,
         registers=tuple(

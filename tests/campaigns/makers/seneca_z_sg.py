@@ -1,7 +1,7 @@
 """Seneca Z-SG strain gauge converter: manual p. 17 to 20. Holding registers, the first one 40001, at offset 0.
 
-A 32-bit number has its most significant word first, as it leaves the factory. The pages found name no register of
-faults: a cell beyond its end scale shows in the weight alone, and a broken wire as full scale or as no number.
+A 32-bit number has its most significant word first, as it leaves the factory. The manual's pages name no fault
+register: a cell beyond its end scale shows in the weight alone, and a broken wire as full scale or as no number.
 """
 
 from __future__ import annotations

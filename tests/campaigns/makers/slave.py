@@ -1,4 +1,4 @@
-"""A slave that answers as a maker's table says: modbus_tk's, at the end of a serial line or on a TCP port."""
+"""A slave that answers according to a maker's table: modbus_tk's, at the end of a serial line or on a TCP port."""
 
 from __future__ import annotations
 
@@ -26,11 +26,11 @@ AREAS: dict[Area, int] = {
 CODES = {"u16": "H", "i16": "h", "u32": "I", "i32": "i", "f32": "f"}
 WRITES_ONE, WRITES_MANY = 6, 16
 SLACK = 1e-6
-"""Share by which a float beyond its bound is still the bound: 1.1 is no f32."""
+"""Tolerance of a float at its bound, as a share: 1.1 is not an f32."""
 
 
 class MakersSlave(modbus.Slave):
-    """Holds the registers of a table. Its addresses are those of the table alone; all others raise exception 2."""
+    """Holds the registers of a table. It has only the table's addresses; all others raise exception 2."""
 
     def __init__(self, table: Table) -> None:
         """Power the device up."""
@@ -40,12 +40,12 @@ class MakersSlave(modbus.Slave):
         super().__init__(UNIT, memory=memory)
         self.table = table
         self.kept: dict[str, float] = {}
-        """What the device remembers and does not show."""
+        """Internal state that the device does not show."""
         self.journal: list[tuple[str, float]] = []
         """Registers that were written, and their values, the oldest first."""
         self.silent = False
         self.raises: dict[int, int] = {}
-        """Exception by function, instead of an answer."""
+        """Exceptions by function, in place of an answer."""
         self._lock = RLock()
         self._reacting = False
         for area, start, size in _spans(table):
@@ -53,7 +53,7 @@ class MakersSlave(modbus.Slave):
         self.power_up()
 
     def power_up(self) -> None:
-        """Begin with the values at which the device starts; it forgets what it was told."""
+        """Set the start values; the device forgets all writes."""
         with self._lock:
             self.kept.clear()
             self.journal.clear()
@@ -85,7 +85,7 @@ class MakersSlave(modbus.Slave):
             self.put(name, value)
 
     def handle_request(self, request_pdu: bytes, broadcast: bool = False) -> bytes:
-        """Answer a request, or refuse it by an exception as the maker has it."""
+        """Answer a request, or refuse it with the maker's exception."""
         function = request_pdu[0]
         code = self.raises.get(function, 0 if function in self.table.functions else 1)
         if code:
@@ -137,7 +137,7 @@ class MakersSlave(modbus.Slave):
         return answer
 
     def _among(self, address: int, count: int) -> list[Register]:
-        """Return the holding registers among so many addresses."""
+        """Return the holding registers in a range of addresses."""
         return [
             register
             for register in self.table.registers
@@ -224,7 +224,7 @@ def _spans(table: Table) -> Iterator[tuple[Area, int, int]]:
             yield area, address, size
 
 
-logging.getLogger("modbus_tk").setLevel(logging.CRITICAL + 1)  # it reports each request that a silent slave leaves
+logging.getLogger("modbus_tk").setLevel(logging.CRITICAL + 1)  # it reports each request that a silent slave ignores
 
 
 @contextmanager
@@ -241,7 +241,7 @@ def served(slave: MakersSlave) -> Iterator[int]:
     try:
         yield port
     finally:
-        Timer(0.02, _listens, [port]).start()  # its thread looks for the end after a request, or a second
+        Timer(0.02, _listens, [port]).start()  # its thread checks for the end after a request, or a second
         server.stop()
 
 

@@ -1,4 +1,4 @@
-"""What a maker's manual says of a device: its registers, and what it does on a fault. No profile is read here."""
+"""A maker's manual of a device as data: its registers, and its behaviour on a fault. No profile is read here."""
 
 from __future__ import annotations
 
@@ -11,10 +11,10 @@ if TYPE_CHECKING:
     from tests.campaigns.makers.slave import MakersSlave
 
 Area = Literal["coil", "discrete", "holding", "input", "inside"]
-"""Tables of Modbus; ``inside``: a number of the device that no register shows as it is."""
+"""Tables of Modbus; ``inside``: a number of the device that no register shows directly."""
 Type = Literal["bit", "bits8", "u16", "i16", "u32", "i32", "f32"]
 SIZES: Mapping[Type, int] = {"bit": 1, "bits8": 8, "u16": 1, "i16": 1, "u32": 2, "i32": 2, "f32": 2}
-"""Addresses that a number takes."""
+"""Number of addresses of a number."""
 
 
 @dataclass(frozen=True)
@@ -24,7 +24,7 @@ class Register:
     name: str
     area: Area
     addresses: tuple[int, ...]
-    """Protocol addresses, from 0; several where the device shows the number in several places."""
+    """Protocol addresses, from 0; several if the device shows the number in several places."""
     type: Type
     least: float = -inf
     """Range in the maker's unit."""
@@ -40,7 +40,7 @@ class Register:
 
 @dataclass(frozen=True)
 class State:
-    """A state of the device, as its registers show it: values by register, over those that it measured."""
+    """A state of the device as shown by its registers: values by register, which replace measured ones."""
 
     name: str
     values: Mapping[str, float]
@@ -55,9 +55,9 @@ class Table:
     functions: frozenset[int]
     registers: tuple[Register, ...]
     faults: tuple[State, ...] = ()
-    """States in which no number may be believed."""
+    """States in which no number is valid."""
     harmless: tuple[State, ...] = ()
-    """States that look alike, in which numbers are good."""
+    """Lookalike states in which numbers are valid."""
     framing: Literal["rtu", "socket"] = "rtu"
     low_word_first: bool = False
     one_area: bool = False
@@ -65,19 +65,20 @@ class Table:
     protected: int = 2
     """Exception on a write to a register that is read-only."""
     out_of_range: int | None = 3
-    """Exception on a write outside the register's range; None: the device answers, and keeps the value it had."""
+    """Exception on a write outside the register's range; None: the device answers, and keeps the previous value."""
     commands: tuple[int, ...] = ()
-    """Addresses at which function 6 writes the number ``command``, whatever they show when they are read."""
+    """Addresses at which function 6 writes the number ``command``, whatever they return when read."""
     forbids: Callable[[MakersSlave, str], int] = lambda slave, written: 0
     """Exception on a write to a register, or a command, in the device's present state; 0 = none."""
     react: Callable[[MakersSlave, str], None] = lambda slave, written: None
-    """What the device does by itself after a register was written, or a measured number has changed."""
+    """The device's own reaction to a written register or a changed measurement."""
     shown: Mapping[str, tuple[str, float]] = field(default_factory=dict[str, tuple[str, float]])
-    """By channel of the profile: the register with its value, and the number of the channel's units in the maker's."""
+    """By channel of the profile: the register with its value, and the number of the channel's units in one of the
+    maker's."""
     parameters: Mapping[str, tuple[str, float]] = field(default_factory=dict[str, tuple[str, float]])
-    """The same for what the profile writes."""
+    """The same for the profile's parameters."""
     wanted: Mapping[str, float] = field(default_factory=dict[str, float])
-    """Registers that must hold a value so that the numbers mean what the profile says."""
+    """Registers that must have a value so that the numbers have the profile's meaning."""
 
     def __getitem__(self, name: str) -> Register:
         return next(register for register in self.registers if register.name == name)

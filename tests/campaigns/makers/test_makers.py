@@ -1,4 +1,4 @@
-"""The campaign of the makers' tables finds a wrong line in a profile, and none in those that come with the program."""
+"""The campaign of the makers' tables finds a wrong line in a profile, and none in the packaged ones."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ MUTANTS = [
 
 
 def wrong(name: str, text: str | None = None) -> list[str]:
-    """Return what is wrong with a profile, or with another text in its place."""
+    """Return the faults of a profile, or of another text in its place."""
     profile = load_profile(name) if text is None else read_profile(name, text)
     tally = Tally()
     made = ControllerCases if TABLES[name] in CONTROLLERS else Cases

@@ -1,7 +1,7 @@
 """`python -m tests.campaigns.master [--seeds N] [--jobs N] [--only PART] [--sample]`: master curves, truth known.
 
-Synthetic two-peak sets of 99 conditions: how near Ts comes, how often its interval holds it, and whether sets that do
-not collapse are told from those that do. Then the simulated slow track, from the recipe to Ts, and Grosch's rules.
+Synthetic two-peak sets of 99 conditions: the error of Ts, how often its interval contains the truth, and whether sets
+that do not collapse are recognised. Then the simulated slow track, from the recipe to Ts, and Grosch's rules.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tests.campaigns.master.twin import Found, measured
 
 SEEDS: Final = 20
 NEAR_K: Final = {0.0: 0.1, 0.02: 1.0, 0.05: 2.0}
-"""Most that Ts of a synthetic set may be off, K, by noise of ln mu."""
+"""Maximum error of Ts of a synthetic set, K, by noise of ln mu."""
 SETS, SAMPLE_SETS = 100, 5
 COVERED_SETS, SAMPLE_COVERED = 200, 16
 COVERED: Final = (0.90, 0.99)
@@ -33,9 +33,9 @@ COVERED_NOISE, COVERED_BIAS_K = 0.02, 0.5
 """Noise, and standard deviation of the thermometer's bias, of the sets whose intervals are counted."""
 FAILING_NOISE: Final = 0.02
 WITHIN_K: Final = 1.0
-"""Most that Ts of a simulated run with a right thermometer may be off, and the median with all that is wrong."""
+"""Maximum error of Ts of a simulated run with a correct thermometer, and the median with all errors."""
 INSIDE: Final = 0.8
-"""Share of simulated runs whose interval has to hold the truth: 16 of 20."""
+"""Required share of simulated runs whose interval contains the truth: 16 of 20."""
 Figure = tuple[str, bool]
 
 
@@ -45,7 +45,7 @@ def made(points: Sequence[MasterPoint]) -> Master:
 
 
 def near(sets: int) -> Iterator[Figure]:
-    """Yield how far Ts is off, by noise, and how often a clean set is not taken for one."""
+    """Yield the error of Ts, by noise, and how often a clean set is not recognised as a master curve."""
     for noise, most_k in NEAR_K.items():
         found = [made(synthetic(seed, noise)) for seed in range(1 if noise == 0.0 else sets)]
         off = [one.collapse.ts_c - TS_C for one in found]
@@ -60,7 +60,7 @@ def near(sets: int) -> Iterator[Figure]:
 
 
 def covered(sets: int) -> Figure:
-    """Return how often the interval of Ts holds it, with a thermometer that is off."""
+    """Return how often the interval contains the true Ts, with an error of the thermometer."""
     held = 0
     for seed in range(sets):
         bias_k = COVERED_BIAS_K * float(np.random.default_rng(10_000 + seed).standard_normal())
@@ -78,7 +78,7 @@ def covered(sets: int) -> Figure:
 
 
 def refused(sets: int) -> Iterator[Figure]:
-    """Yield how often sets that do not collapse are told to be none, and power laws to say nothing."""
+    """Yield how often sets that do not collapse, and power laws, which determine no Ts, are recognised."""
     for name, how in FAILING.items():
         found = [made(synthetic(seed, FAILING_NOISE, **how)) for seed in range(sets)]  # type: ignore[arg-type]
         told = sum(one.judged.verdict is Verdict.DOES_NOT for one in found)
@@ -96,7 +96,7 @@ def made_up(sets: int, covered_sets: int) -> Iterator[Figure]:
 
 
 def twin(seeds: int, jobs: int, *, sample: bool) -> Iterator[Figure]:
-    """Yield what simulated runs give, with a right thermometer and with everything that is wrong."""
+    """Yield the results of simulated runs, with a correct thermometer and with all errors."""
     wanted = [(seed, unbiased, sample) for unbiased in ((True,) if sample else (True, False)) for seed in range(seeds)]
     found: list[Found] = []
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
@@ -125,7 +125,7 @@ def twin(seeds: int, jobs: int, *, sample: bool) -> Iterator[Figure]:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Print every figure; 1 where one misses."""
+    """Print every figure; return 1 if one misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.master", description=__doc__)
     parser.add_argument("--seeds", type=int, default=SEEDS, metavar="N", help=f"simulated runs of each sort ({SEEDS})")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="processes (1)")

@@ -1,10 +1,9 @@
 """Grosch's experiments on the simulated track: its maxima and his two rules, found from the rows alone.
 
-The seeds take each of his four rubbers in turn. In every other seed the surfaces' lengths are others than 6 nm and
-150 um: the rules do not hold, and the test of the rules has to find out which one. In each seed the rubber on the twin
-is another than its file and the analysis believe: Ts, the constants of the shift, heights and widths are off. Rows are
-drawn from the law with the scatter of specimens and repeats and the biases of air sensor and session, or come from
-whole runs of all three tracks.
+The seeds take each of his four rubbers in turn. In every other seed the surfaces' lengths are not 6 nm and 150 um: a
+rule fails, and the test of the rules must find which one. In each seed the twin's rubber differs from the beliefs of
+its file and the analysis in Ts, the constants of the shift, heights and widths. Rows are drawn from the law with the
+scatter of specimens and repeats and the biases of air sensor and session, or come from whole runs of all three tracks.
 """
 
 from __future__ import annotations
@@ -39,11 +38,12 @@ SEEDS, SAMPLE_SEEDS, RUNS = 20, 2, 8
 REFERENCE_C: Final = 20.0
 NEAR_DECADES: Final = 0.3
 HELD: Final = 0.9
-"""Share of seeds that is asked: 18 of 20."""
+"""Required share of seeds: 18 of 20."""
 BROKEN_DECADES: Final = (0.8, 1.2)
-"""By how much a length is off, where a rule does not hold."""
+"""Change of a length in decades where a rule fails."""
 OFF_K, OFF_SHIFT, OFF_HEIGHT, OFF_WIDTH = 1.0, 0.02, 0.15, 0.1
-"""How far the twin's rubber is off its file at most: Ts; constants of the shift, heights and widths as shares [A]."""
+"""Maximum difference of the twin's rubber from its file: Ts; constants of the shift, heights and widths as shares
+[A]."""
 SPEEDS_M_S: Final = tuple(10.0 ** (-6.0 + 0.5 * i) for i in range(9))
 """Of the recipe grosch."""
 PIECE, REPEAT, AIR_K = 0.03, 0.02, 1.0
@@ -51,16 +51,17 @@ PIECE, REPEAT, AIR_K = 0.03, 0.02, 1.0
 TRACKS: Final = ("wavy glass", "silicon carbide", "silicon carbide, talc")
 GLASS, CLOTH, TALC = TRACKS
 MECHANISM: Final = {GLASS: Mechanism.ADHESION, CLOTH: None, TALC: Mechanism.DEFORMATION}
-"""Of a track's only maximum, as `tester master` knows it."""
+"""Name of a track's only maximum in `tester master`."""
 MUCH: Final = 0.7
-"""Talc leaves at the slower maximum less than this share of what it leaves at the faster one [A]: much more lowered."""
+"""At the slower maximum talc leaves less than this share of what it leaves at the faster one [A]: a much stronger
+reduction."""
 ROWS: Final = 99
 Figure = tuple[str, bool]
 
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A maximum: its truth, and what was found, as log10 of the speed at the reference temperature."""
+    """A maximum: its truth and the result, as log10 of the speed at the reference temperature."""
 
     truth: float
     found: float
@@ -68,7 +69,7 @@ class Place:
 
     @property
     def met(self) -> bool:
-        """Return whether it is near the truth, and its interval holds that."""
+        """Return whether it is near the truth, and its interval contains the truth."""
         low, high = self.interval
         return abs(self.found - self.truth) <= NEAR_DECADES and low <= self.truth <= high
 
@@ -76,7 +77,7 @@ class Place:
 @dataclass(frozen=True, slots=True)
 class Trial:
     """One seed: rows and number of maxima by track, the places of those found on the clean ones, the rules' truth and
-    verdicts there, and what the tracks tell apart."""
+    verdicts there, and the comparison of the tracks."""
 
     name: str
     rows: tuple[int, ...]
@@ -91,7 +92,7 @@ class Trial:
 
     @property
     def complete(self) -> bool:
-        """Return whether every row of every track is there."""
+        """Return whether no track lacks a row."""
         return self.rows == (ROWS,) * len(TRACKS)
 
     @property
@@ -102,7 +103,7 @@ class Trial:
 
 
 def surfaces_of(seed: int) -> dict[str, TrackSurface]:
-    """Return the tracks of a seed; in odd ones a length, or both, is another: adhesion slower, deformation faster."""
+    """Return the tracks of a seed; in odd ones one length, or both, differ: adhesion slower, deformation faster."""
     random = np.random.default_rng([seed, 7])
     jump, grit = (10.0 ** float(random.uniform(*BROKEN_DECADES)) for _ in range(2))
     which = int(random.integers(3)) if seed % 2 else 3
@@ -114,7 +115,7 @@ def surfaces_of(seed: int) -> dict[str, TrackSurface]:
 
 
 def rubber_of(seed: int, compound: str) -> TrackRubber:
-    """Return the rubber that the twin has in a seed: off the one that its file and the analysis believe."""
+    """Return the twin's rubber in a seed: it differs from the beliefs of its file and the analysis."""
     draw, own = np.random.default_rng([seed, 9]), RUBBERS[compound]
 
     def off(value: float, share: float) -> float:
@@ -179,7 +180,7 @@ def _keys(path: str, group: TrackRubber | TrackSurface, packaged: TrackRubber | 
 
 
 def trial(which: tuple[int, bool]) -> Trial:
-    """Return what a seed shows; ``which``: the seed, and whether by a whole run."""
+    """Return the result of a seed; ``which``: the seed, and whether by a whole run."""
     seed, whole = which
     compound, tracks = FOUR_RUBBERS[seed // 2 % len(FOUR_RUBBERS)], surfaces_of(seed)
     rubber, own = Library.beside().rubber(compound), rubber_of(seed, compound)

@@ -1,4 +1,4 @@
-"""Sets of a two-peak master curve with known truth, and sets that are none."""
+"""Sets of a two-peak master curve with known truth, and sets without a master curve."""
 
 from __future__ import annotations
 
@@ -49,9 +49,9 @@ def synthetic(
     thermometer_k: float = 0.0,
     power: float | None = None,
 ) -> list[MasterPoint]:
-    """Return 99 conditions. ``noise``: standard deviation of ln mu; ``factors``: that of a factor of each temperature;
-    ``heights``: share by which the adhesion peak is lower at the warmest temperature, and higher at the coldest;
-    ``bias_k``: of all temperatures; ``power``: exponent of a power law instead of the peaks.
+    """Return 99 conditions. ``noise``: standard deviation of ln mu; ``factors``: standard deviation of a factor of each
+    temperature; ``heights``: share by which the adhesion peak is lower at the warmest temperature, and higher at the
+    coldest; ``bias_k``: of all temperatures; ``power``: exponent of a power law instead of the peaks.
     """
     random = np.random.default_rng(seed)
     source = MasterSource("synthetic", 0.0, thermometer_k)

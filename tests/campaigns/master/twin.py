@@ -32,7 +32,7 @@ LEFT_OUT: Final = (", 30 degC, 40 degC, 50 degC, 60 degC", "1e-6 m/s, ")
 
 @dataclass(frozen=True, slots=True)
 class Found:
-    """What came out of a run."""
+    """The result of a run."""
 
     seed: int
     unbiased: bool
@@ -44,17 +44,17 @@ class Found:
 
     @property
     def off_k(self) -> float:
-        """Return how far Ts is off the truth, K."""
+        """Return the error of Ts, K."""
         return self.ts_c - TRUTH_C
 
     @property
     def inside(self) -> bool:
-        """Tell whether the interval holds the truth."""
+        """Return whether the interval contains the truth."""
         return self.low_c <= TRUTH_C <= self.high_c
 
 
 def points_of(bench: TrackBench) -> list[MasterPoint]:
-    """Return the rows of a run that is over, with the uncertainty that the machine's budget gives the thermometer."""
+    """Return the rows of a finished run, with the thermometer's uncertainty from the machine's budget."""
     thermometer = hypot(*(one.standard for one in TERMS if one.acts is Acts.TEMPERATURE))
     source = MasterSource("twin", 0.0, thermometer)
     steps = {step.condition: step for step in bench.plan.conditions()}
@@ -73,7 +73,7 @@ def points_of(bench: TrackBench) -> list[MasterPoint]:
 
 
 def measured(which: tuple[int, bool, bool]) -> Found:
-    """Return what a run gives: of which seed, whether with a thermometer that is right, whether of fewer rows."""
+    """Return the result of a run: by seed, with or without a correct thermometer, and with all or fewer rows."""
     seed, unbiased, sample = which
     text = one_track(Path(recipes.find("grosch")).read_text(encoding="utf-8"))
     for left_out in LEFT_OUT if sample else ():
