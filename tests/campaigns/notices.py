@@ -1,8 +1,8 @@
 """`python -m tests.campaigns.notices [--sample] [--schedules N]`: notices through outages and kills.
 
 Each schedule has some hours of notices in virtual time, and a real relay over loopback that is down, drops mails or
-takes them without an answer. The sender is killed after any byte that it writes to its outbox, and starts again; the
-service repeats its notes to it. Counted: what is lost, doubled, out of order.
+accepts them without an answer. The sender is killed after any byte that it writes to its outbox, and restarts; the
+service repeats its notes. Counts lost, duplicate and misordered notices.
 """
 
 from __future__ import annotations
@@ -29,10 +29,10 @@ from tests.tester.notices.scene import ANNA, HEAD, NOON_S, OutboxScene, mail_set
 
 SCHEDULES, SAMPLE_SCHEDULES = 200, 10
 HOURS = 6.0
-"""Length of a schedule, h of virtual time; then the relay is up until everything has gone."""
+"""Length of a schedule, h of virtual time; then the relay is up until everything is sent."""
 AFTER_S = 4.0 * 3600.0
 COST_US = 100.0
-"""Most that a notice may cost the process that scans, us: 1 % of a scan at 100 Hz [A]."""
+"""Maximum cost of a notice to the scanning process, us: 1 % of a scan at 100 Hz [A]."""
 
 
 class Killed(BaseException):
@@ -56,7 +56,7 @@ class KillableFile(OutboxFile):
 
 @dataclass
 class Tally:
-    """What has happened in all schedules."""
+    """Totals of all schedules."""
 
     notices: int = 0
     kills: int = 0
@@ -66,7 +66,7 @@ class Tally:
     lost: int = 0
     doubled: int = 0
     unexcused: int = 0
-    """Doubles beyond the number of lost answers and kills, or with other bytes than the first."""
+    """Duplicates beyond the number of lost answers and kills, or with different bytes."""
     disorder: int = 0
     examples: list[str] = field(default_factory=list[str])
 
@@ -84,7 +84,7 @@ class Schedule:
         self.scene = self.started()
 
     def started(self) -> OutboxScene:
-        """Start a sender, which gets all notes again; it may be killed while it starts."""
+        """Start a sender, which receives all notes again; it may be killed during its start."""
         while True:
             left = int(self.random.expovariate(1 / 4000.0)) if self.may_kill else sys.maxsize
             try:
@@ -147,7 +147,7 @@ class Schedule:
         self.count()
 
     def count(self) -> None:
-        """Compare what the relay has taken with what the service has told."""
+        """Compare the notices accepted by the relay with those sent by the service."""
         tally, bad = self.tally, list[str]()
         tally.notices += 2 * len(self.told)
         tally.kills += self.kills
@@ -177,7 +177,7 @@ class Schedule:
 
 
 def cost_us(count: int = 2000) -> float:
-    """Return what a notice costs the process that scans, us: half of them cost less. Its gateway does not read."""
+    """Return the median cost of a notice to the scanning process, us. Its gateway does not read."""
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         ours, theirs = socketpair()
@@ -195,7 +195,7 @@ def cost_us(count: int = 2000) -> float:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure; 1 where a figure misses."""
+    """Measure; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.notices", description=__doc__)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_SCHEDULES} schedules")
     parser.add_argument("--schedules", type=int, default=SCHEDULES, metavar="N", help=f"schedules ({SCHEDULES})")

@@ -2,8 +2,8 @@
 
 The CAN plug or the adapter is pulled at N moments, drawn by seed. Half are in one process in virtual time, anywhere
 between two scans; in the other half `tester sim` serves over TCP and as an slcan adapter on a pseudo-terminal, and
-`tester run` connects, arms or moves. Each first alarm must name cable, adapter or bus. Where a computer was late beside
-a bare loop that was late as well, the alarm may name the computer instead; such a try is repeated.
+`tester run` connects, arms or moves. Each first alarm must name cable, adapter or bus. If a bare loop shows that the
+computer was late, the alarm may name the computer instead; such a try is repeated.
 
 `--busy` runs RECIPE (default: one short condition) over TCP and over ptys while a third process keeps one core busy:
 the run must end, or the alarm must name the late computer. Exit code 1 where a figure misses.
@@ -45,21 +45,21 @@ FAULTS = {"plug": "CAN bus off", "adapter": "CAN adapter gone"}
 NAMED = re.compile(r"CAN cable|CAN adapter|CAN bus|bus lost")
 LATE = re.compile(r"was late|scan late")
 STAGES = {"connecting": 4.0, "install wheel": 2.0}
-"""Lines of a run after which something is pulled, and the longest time from there, s: it connects, or moves."""
+"""Lines of a run after which something is pulled, and the longest delay, s: it connects, or moves."""
 WAYS = list(product(FAULTS, STAGES))
 ARMED = "install wheel"
 NOTICED_S = 1.0
-"""A run that has armed has tripped by then, s: with the plug back it ends sooner."""
+"""An armed run has tripped within this time, s; with the plug back it ends earlier."""
 LOOP_LATE_S = 0.015
-"""A bare loop as late as this shows that the computer was late, s: a scan and a half."""
+"""Lateness of a bare loop that shows that the computer was late, s: a scan and a half."""
 AGAIN = 3
-"""Tries at most for one moment, where the computer was late."""
+"""Maximum tries for one moment, if the computer was late."""
 PATIENCE_S = 90.0
 
 
 @dataclass(frozen=True, slots=True)
 class Pulled:
-    """A pull in two processes: where, the alarm, and how late a bare loop was meanwhile, s."""
+    """A pull in two processes: where, the alarm, and a bare loop's lateness at the time, s."""
 
     where: str
     alarm: str
@@ -143,7 +143,7 @@ class Machine:
 
 
 def alarm_of(printed: str) -> str:
-    """Return the line in which a run states why it ended, "" if there is none."""
+    """Return the line in which a run reports why it ended, "" if there is none."""
     ends = re.compile(r"(tripped|rig unreachable|failed|stopped): ")
     return next((line for line in printed.splitlines() if ends.match(line)), f"no alarm: {printed.strip()[-300:]}")
 
@@ -214,7 +214,7 @@ def busy(folder: Path, recipe: str) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure; 1 where a figure misses."""
+    """Measure; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.plug", description="The alarm names the cable.")
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} tries in two processes")
     parser.add_argument("--moments", type=int, default=MOMENTS, metavar="N", help=f"default {MOMENTS}")

@@ -1,8 +1,8 @@
 """Words of the tree that a native engineer would not say aloud: phrases and names that are never right, and others.
 
-``house`` prints the counts; ``tests/test_prose.py`` holds ``NEVER`` and ``NO_NAMES`` to none. Prose is every page below
-``docs``, the README, the changelog, and the comments and strings (docstrings, messages, help) of the packages. The
-words of ``COUNTED`` are right in some sentences, so they are only counted.
+``house`` prints the counts; ``tests/test_prose.py`` requires that ``NEVER`` and ``NO_NAMES`` do not occur. Prose is
+every page below ``docs``, the README, the changelog, and the comments and strings (docstrings, messages, help) of the
+packages. The words of ``COUNTED`` are right in some sentences, so they are only counted.
 
     python -m tests.campaigns.prose SEED      # twenty docstrings and the names of five pages, drawn for a reader
 """
@@ -25,7 +25,7 @@ PAGES = ("README.md", "CHANGELOG.md", "docs/**/*.md")
 NEVER = ("is told", "are told", "was told", "is heard", "are heard", "goes on with", "go on with", "nobody minds")
 """Write "receives", "reports", "prints"; "resumes", "continues with"; "ignores"."""
 NO_NAMES = ("told", "said", "heard", "nobody_minds")
-"""Names of parameters and locals that do not tell what they hold."""
+"""Names of parameters and locals that do not describe their contents."""
 COUNTED = (
     "goes on",
     "go on",

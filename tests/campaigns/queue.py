@@ -1,11 +1,10 @@
 """`python -m tests.campaigns.queue [--sample] [--schedules N] [--twin N] [--measure RUNS]`: random lives of a queue.
 
 A life is a schedule of adds, moves, skips, drops, starts, stops, answers, alarms and changes of the rig, cut by kills
-and power cuts at any byte of the record. The service, its queue and the record are the real ones; the run is a fast
-fake, which begins, asks, waits for the answer, and ends as drawn. ``--twin``: lives of `tester serve` with runs on the
-twin as well (``queue_twin``). The ends of queues without disturbance are composed
-of durations that were measured on the twin with recipes from which no constant of the prediction was drawn
-(``queue_measured``; ``--measure`` makes them anew).
+and power cuts at any byte of the record. The service, its queue and the record are real; the run is a fast fake, which
+begins, asks, waits for the answer, and ends as drawn. ``--twin``: also lives of `tester serve` with runs on the twin
+(``queue_twin``). The ends of undisturbed queues are sums of durations measured on the twin, with recipes that no
+constant of the prediction was fitted to (``queue_measured``; ``--measure`` measures them again).
 """
 
 from __future__ import annotations
@@ -32,10 +31,10 @@ from tests.tester.queue.made import UTC, item, queue_of
 
 SCHEDULES, SAMPLE = 1000, 60
 QUIET = 200
-"""Queues without disturbance on each rig whose end is predicted when they start."""
+"""Undisturbed queues on each rig whose end is predicted at the start."""
 LEAST_ITEMS, MOST_ITEMS = 12, 24
-"""Items of such a queue: a week-end of recipes of an hour. One run alone spreads by a sixth on the twin, so that five
-items have a half-width of 15 %: that is the machine's, no better sum narrows it."""
+"""Items of such a queue: a week-end of recipes of an hour. One run alone scatters by a sixth on the twin, so five items
+have a half-width of 15 %: the machine causes that, and no better sum can narrow it."""
 
 
 def lives(count: int) -> list[Figure]:
@@ -82,7 +81,7 @@ def ends() -> list[Figure]:
 def by_rig(
     path: Path, measured: Sequence[Measured], folder: Path
 ) -> tuple[dict[str, list[tuple[Needs, tuple[float, ...]]]], int]:
-    """Return the plans of measured recipes with how long runs took, s, by rig, and how many entries are stale."""
+    """Return the plans of measured recipes with their runs' durations, s, by rig, and the number of stale entries."""
     kept, stale = read(path), 0
     known: dict[str, list[tuple[Needs, tuple[float, ...]]]] = {}
     for one in in_worlds(measured):
@@ -96,7 +95,7 @@ def by_rig(
 
 
 def judged(entries: Sequence[tuple[Needs, tuple[float, ...]]], random: Random) -> tuple[float, list[float]]:
-    """Return in how many of ``QUIET`` queues the interval holds the end, per cent, and its half-widths, per cent."""
+    """Return in how many of ``QUIET`` queues the interval contains the end, per cent, and its half-widths, per cent."""
     inside, halves = 0, list[float]()
     for _ in range(QUIET):
         drawn = random.choices(entries, k=random.randint(LEAST_ITEMS, MOST_ITEMS))
@@ -108,7 +107,7 @@ def judged(entries: Sequence[tuple[Needs, tuple[float, ...]]], random: Random) -
 
 
 def speed() -> list[Figure]:
-    """Return how long a prediction and a check of 20 items take."""
+    """Return the duration of a prediction and of a check of 20 items."""
     mount = (PersonAsk(0.0, "mount"),)
     items = (item(number, seconds=600.0 * number, asks=mount if number % 3 else ()) for number in range(1, 21))
     queue = queue_of(*map(ItemAdded, items))
@@ -123,7 +122,7 @@ def speed() -> list[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Print every figure; 1 where one misses."""
+    """Print every figure; return 1 if one misses."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} schedules instead of {SCHEDULES}")
     parser.add_argument("--schedules", type=int, default=0)

@@ -39,17 +39,17 @@ from tests.tester.service.stage import Stage as ServiceStage
 
 SIM: Rig = load_rig("sim")
 OPS = 60
-"""Acts of a life."""
+"""Number of acts of a life."""
 TURNS_MOST = 4000
 
 
 class Killed(BaseException):
-    """The process is gone."""
+    """The process was killed."""
 
 
 @dataclass(slots=True)
 class World:
-    """What is really so, and what really happened."""
+    """The true state, and the true events."""
 
     rig: str = "rig 0"
     disk: bool = True
@@ -58,14 +58,14 @@ class World:
     """Whether a person has started the queue since the last stop, trip, failure or restart."""
     asks: bool = False
     stood: bool = False
-    """Whether a person let the queue stand while an item was under way."""
+    """Whether a person paused the queue during an item."""
     begun: Counter[int] = field(default_factory=Counter[int])
-    """Runs that really began, by item."""
+    """Runs that truly began, by item."""
     over: dict[int, RunStatus] = field(default_factory=dict[int, RunStatus])
     confirmed: set[int] = field(default_factory=set[int])
-    """Items whose add was answered."""
+    """Items whose add command was answered."""
     looked: set[int] = field(default_factory=set[int])
-    """Items for which the rig was looked at since they last began."""
+    """Items for which the rig was inspected since they last began."""
 
 
 class KnownPast:
@@ -78,7 +78,7 @@ class KnownPast:
 
 
 class FakeAssessor:
-    """Finds what the world is like."""
+    """Assesses the state of the world."""
 
     def __init__(self, world: World) -> None:
         self._world = world
@@ -110,7 +110,7 @@ class FakeAssessor:
 
 
 class Life:
-    """A life: services, one after the other, until the acts are used up; then what is wrong is in ``misses``."""
+    """A life: successive services until the acts are used up; ``misses`` then lists the faults."""
 
     def __init__(self, folder: Path, random: Random) -> None:
         """Live in ``folder``."""
@@ -141,7 +141,7 @@ class Life:
 
     @contextmanager
     def _patched(self) -> Iterator[QueueStage]:
-        """Make a service in which time, planning and the run are fakes, and the record's writes may be cut."""
+        """Make a service with fake time, planning and run, in which a write of the record may be cut."""
         stage = QueueStage(self)
         with patch("tester.service.service.load_rig", lambda *_: SIM), \
              patch("tester.service.service.past_of", lambda *_: Past("done", "", KnownPast())), \
@@ -164,7 +164,7 @@ class Life:
                 self._bury(service)
 
     def _bury(self, service: Service) -> None:
-        """Release what the operating system would release from a dead process."""
+        """Release the resources that the operating system would release after a process dies."""
         changes = service.queue.changes
         if changes is not None:
             changes._thread.shutdown()
@@ -199,7 +199,7 @@ class Life:
     def _session(
         self, order: Order, options: SessionOptions, _yes: bool, _notes: str, work: object, told: Callable[[str], None]
     ) -> tuple[RunView | None, str]:
-        """Play a run: it may not begin, asks, and ends as drawn."""
+        """Play a run: it may fail to begin, asks, and ends as drawn."""
         stage = self._stage
         service = stage.service
         assert service is not None
@@ -214,7 +214,7 @@ class Life:
         work(session)
         if why := session.accepts(SimpleNamespace(work=SimpleNamespace(rig=SimpleNamespace(text=world.rig)))):
             return None, why
-        if not world.disk:  # a run measures the space once more itself
+        if not world.disk:  # a run itself measures the space again
             return None, "too little room"
         self._check_start(number)
         world.begun[number] += 1
@@ -286,7 +286,7 @@ class Life:
 
 
 class QueueStage(ServiceStage):
-    """The service's clients: they act at random. A kill may come at every poll."""
+    """The service's clients, which act at random. Each poll may bring a kill."""
 
     def __init__(self, life: Life) -> None:
         """Act in ``life``."""
@@ -311,7 +311,7 @@ class QueueStage(ServiceStage):
         if isinstance(order.action, QueueStart):
             world.person, world.stood = True, False
         if isinstance(order.action, QueueStand) and self.service is not None:
-            world.stood = True  # an item that is taken already goes on
+            world.stood = True  # an item that has started continues
             world.person = world.person and self.service.queue.queue.under_way is not None
 
     def refuse(self, order: Order, reason: str) -> None:
@@ -382,14 +382,14 @@ class InlineExecutor:
     """Writes at once, in place of a thread, so that a seed gives the same life on every computer."""
 
     def __init__(self, *_: object, **__: object) -> None:
-        """Take what a pool of threads takes."""
+        """Accept a thread pool's arguments."""
 
     def submit(self, work: Callable[..., Queue], *given: object) -> Future[Queue]:
         """Carry out the work now."""
         future: Future[Queue] = Future()
         try:
             future.set_result(work(*given))
-        except BaseException as error:  # noqa: BLE001 - a kill, too, reaches the service by its future
+        except BaseException as error:  # noqa: BLE001 - a kill also reaches the service by its future
             future.set_exception(error)
         return future
 
@@ -398,7 +398,7 @@ class InlineExecutor:
 
 
 def fault_figures(misses: list[str], where: str = "") -> list[Figure]:
-    """Print the first faults of many lives, and return the figures of each kind."""
+    """Print the first faults of many lives; return the figures of each kind."""
     for miss in misses[:20]:
         print(f"     {miss}")
     kinds = {kind: sum(kind in miss for miss in misses) for kind in ("twice", "lost", "evidence", "reason")}
@@ -412,7 +412,7 @@ def fault_figures(misses: list[str], where: str = "") -> list[Figure]:
 
 
 def _roomy(room: FreeRoom) -> None:
-    """Measure the disk at once: the fake clock would outrun the thread that does it."""
+    """Measure the disk at once: the fake clock would outrun its thread."""
     room.hangs, room._free = False, 10**12
 
 

@@ -1,7 +1,7 @@
 """Durations of runs on the twin, measured for ``tests.campaigns.queue``: recipes to train with, and held-out ones.
 
-Constants of the prediction may be drawn from ``TRAINING``; it is judged by ``HELD_OUT`` alone. A *world* is what the
-twin truly is, and what its rig file believes of it: all items of a queue run in one.
+Constants of the prediction may be fitted to ``TRAINING``; only ``HELD_OUT`` judges it. A *world* is the true state of
+the twin together with the beliefs of its rig file: all items of a queue run in one world.
 """
 
 from __future__ import annotations
@@ -35,7 +35,8 @@ WHEEL_WORLDS: dict[str, tuple[str, ...]] = {
         *REAL_RUBBER, "wear.rate=0.03", "observer.friction_heat_fraction=0.045", "sim.wheel.outer_diameter=90.3",
     ),
 }  # fmt: skip
-"""Wear rate, share of friction heat and diameter as the rig file has them, and off the twin's truth to both sides."""
+"""Wear rate, share of friction heat and diameter as in the rig file, and with errors to both sides of the twin's
+truth."""
 TRACK_WORLDS: dict[str, tuple[str, ...]] = {
     "as believed": (),
     "beliefs high": ("heat.rise=0.65 K/W", "sim.ambient=21.5 degC"),
@@ -95,7 +96,7 @@ class Measured:
 
     @property
     def made_of(self) -> str:
-        """Hash of what was run: the entry counts for nothing else."""
+        """Hash of recipe and rig: the entry is valid only for these."""
         return sha256("\n".join((self.rig, *self.overrides, self.text)).encode()).hexdigest()[:16]
 
     def expected(self, folder: Path) -> Estimate:
@@ -103,7 +104,7 @@ class Measured:
         return prepared(self.file(folder), self.rig, self.overrides).expected
 
     def file(self, folder: Path) -> str:
-        """Return how a command names the recipe; a text becomes a file in ``folder``."""
+        """Return the recipe's name for a command; a text becomes a file in ``folder``."""
         if "\n" not in self.recipe:
             return self.recipe
         path = folder / f"{self.name.replace(' ', '-')}.yaml"
@@ -165,7 +166,7 @@ def in_worlds(measured: Sequence[Measured]) -> Iterator[Measured]:
 
 
 def read(path: Path) -> dict[tuple[str, str], tuple[str, tuple[float, ...]]]:
-    """Return the entries of a file: hash of what was run, and rig seconds, by recipe and world."""
+    """Return the entries of a file: hash and rig seconds, by recipe and world."""
     rows = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     return {(row["recipe"], row["world"]): (row["made_of"], tuple(row["took_s"])) for row in rows}
 
@@ -184,7 +185,7 @@ def measure(runs: int) -> None:
 
 
 def _took_s(one: Measured, folder: Path, seed: int) -> float | None:
-    """Return the rig seconds of a run that came to its end, with or without all values; None for another end."""
+    """Return the rig seconds of a finished run, with or without all values; None for another end."""
     axes = tuple(axis_of(override) for override in one.overrides)
     sweep = prepare_sweep(SweepOptions(one.file(folder), one.rig, axes, 1, seed))
     result = run_case(sweep.tasks[0])

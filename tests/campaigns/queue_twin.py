@@ -32,18 +32,18 @@ from tests.campaigns.screens.seat import LOOK_S, Seat, installed
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
 ITEMS = 5
-"""Items that are added in a life, at least."""
+"""Minimum number of items added in a life."""
 KILLS_MOST = 4
 KILL_WITHIN_S = 15.0
-"""A service is killed so long after its first command at most: a run and what it takes to add an item are seconds."""
+"""Maximum time from a service's first command to its kill: a run, or adding an item, takes seconds."""
 QUIET_S = 1.0
-"""So long nothing may begin in a service that was started anew."""
+"""Nothing may begin in a restarted service for this long."""
 LIFE_S = 180.0
 BEGIN_S = 30.0
 
 
 class TwinLife:
-    """A life in a folder of its own; afterwards ``misses`` has what was wrong, ``counts`` what happened."""
+    """A life in a folder of its own; afterwards ``misses`` has the faults, ``counts`` the events."""
 
     def __init__(self, folder: Path, random: Random) -> None:
         """Live in ``folder``."""
@@ -63,7 +63,7 @@ class TwinLife:
         self._judge()
 
     async def _service(self, for_s: float, *, last: bool) -> None:
-        """Run a service; kill it after a time, the last once every item is over."""
+        """Run a service; kill it after a time, the last one when every item has ended."""
         with (self.seat.folder / "serve.log").open("ab") as log:
             process = subprocess.Popen(
                 [*installed(), "serve", "--out", str(self.seat.runs)], cwd=self.seat.folder, env=self.seat.environment,
@@ -92,7 +92,7 @@ class TwinLife:
                 await watching
 
     async def _watch(self, client: Client) -> None:
-        """Look at every state of the queue, and drop what else comes."""
+        """Check every state of the queue, and drop other messages."""
         with suppress(LostError):
             async for _ in client:
                 queue = client.queue
@@ -102,7 +102,7 @@ class TwinLife:
                         self.misses.append(f"a wait without a reason: {queue}")
 
     async def _begins_nothing(self, client: Client) -> None:
-        """After a restart nothing runs before a person has started the queue."""
+        """After a restart nothing runs until a person starts the queue."""
         end_s = clock.monotonic() + BEGIN_S
         while client.queue is None and clock.monotonic() < end_s:
             await asyncio.sleep(LOOK_S)

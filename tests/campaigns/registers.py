@@ -1,10 +1,10 @@
-"""`python -m tests.campaigns.registers [--sample] [--cases N] [--seed N]`: does a number change on its way?
+"""`python -m tests.campaigns.registers [--sample] [--cases N] [--seed N]`: does a number change in transit?
 
-Each case draws a profile by seed: type, scale, offset and order of a channel and of a parameter, the function that
-writes, a password before, a self-test to wait for. Our driver then talks to one of three Modbus TCP servers from
-elsewhere (pymodbus, pyModbusTCP, modbus_tk). Numpy, and another client, look into the server's registers: a parameter
-must lie within half a count of its value (f32: within its precision), and a channel must read as it was put there. A
-value that does not fit must be refused. Prints a line a figure; exit status 1 where a value changed silently.
+Each case draws a profile by seed: type, scale, offset and order of a channel and of a parameter, the write function, a
+password before it, a self-test to wait for. Our driver then talks to one of three third-party Modbus TCP servers
+(pymodbus, pyModbusTCP, modbus_tk). Numpy and another client read the server's registers: a parameter must be within
+half a count of its value (f32: within its precision), and a channel must read as written there. A value that does not
+fit must be refused. Prints a line a figure; exit status 1 where a value changed silently.
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ within_ms = 60000
 
 @dataclass(frozen=True)
 class Case:
-    """A drawn profile, and the values to carry."""
+    """A drawn profile, and the values to transfer."""
 
     type: str
     scale: float
@@ -130,7 +130,7 @@ def on_wire(value: float, kind: str, case: Case) -> list[int]:
 
 
 def in_registers(words: list[int], kind: str, case: Case) -> float:
-    """Return the number in registers by numpy: the way back of ``on_wire``."""
+    """Return the number in registers by numpy: the inverse of ``on_wire``."""
     data = np.array(words, dtype=">u2")
     if len(words) == 2:
         data = data[::-1] if case.words == "low_first" else data
@@ -139,7 +139,7 @@ def in_registers(words: list[int], kind: str, case: Case) -> float:
 
 
 class Bench:
-    """A server, and another client that looks into it."""
+    """A server, and another client that reads it."""
 
     def __init__(self, port: int) -> None:
         """Connect the other client."""
@@ -204,13 +204,13 @@ class Bench:
 
 
 def tolerance(case: Case, counts: float, value: float) -> float:
-    """Return half a count, or the precision of an f32, beyond the rounding of the arithmetic itself."""
+    """Return half a count, or the precision of an f32, plus the rounding of the arithmetic itself."""
     rounding = 4e-16 * (abs(value) + abs(case.offset) + abs(counts * case.scale))
     return rounding + case.scale * (float(np.spacing(np.float32(abs(counts)))) if case.type == "f32" else 0.5)
 
 
 def free_port() -> int:
-    """Return a port of the kernel's choice."""
+    """Return a port chosen by the kernel."""
     with socket.create_server(("127.0.0.1", 0)) as free:
         return int(free.getsockname()[1])
 

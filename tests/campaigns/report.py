@@ -1,7 +1,7 @@
 """`python -m tests.campaigns.report RUN`: size and processor time of `tester report`, as a user calls it.
 
-RUN: the folder of a stored run; what is asked is asked of one of the whole Table 2 (`tester run table2 --yes`), and
-kept by any that is smaller. Prints a line a figure; exit code 1 where one misses. Needs the extra `report`; posix.
+RUN: the folder of a stored run; the limits are for one of the whole Table 2 (`tester run table2 --yes`), and any
+smaller run keeps them. Prints a line a figure; exit code 1 where one misses. Needs the extra `report`; posix.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from tests.campaigns.install.place import PASS_S, pass_s
 
 MEGABYTES = 5.0
 CPU_S = 30.0
-"""Where `python3 -c pass` takes PASS_S; a slower machine has longer."""
+"""Where `python3 -c pass` takes PASS_S; a slower machine may take longer."""
 ELSEWHERE = re.compile(r"""(src|href)\s*=\s*["'](?!#|data:)|url\(\s*["']?(?!#|data:)|@import|<script""", re.IGNORECASE)
-"""What a page fetches from elsewhere, or runs."""
+"""Anything that a page loads from elsewhere, or runs."""
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Make a report and measure it; 1 where a figure misses."""
+    """Make a report and measure it; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.report", description="What a report takes.")
     parser.add_argument("run", type=Path, help="the folder of a stored run")
     run = parser.parse_args(arguments).run

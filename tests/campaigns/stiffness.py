@@ -1,10 +1,11 @@
-"""`python -m tests.campaigns.stiffness [--sample] [--jobs N]`: does a run find stiffness, softening and relaxation?
+"""`python -m tests.campaigns.stiffness [--sample] [--jobs N]`: does a run find stiffness, softening and relaxation
+correctly?
 
-The twin's rubber is drawn by seed: its stiffness, how the load rises with depth, what it loses with a kelvin and with a
-decade of time. So are its growth with heat, its runout and its wear, while the software believes the rig file's figures
-of them. Each run measures two loads at three temperatures; its table of stiffness is held against what was put in. The
-true depth in a condition follows from the force on record and the twin's law of contact. Prints a line a figure and
-exits 1 where one misses.
+The twin's rubber is drawn by seed: its stiffness, the rise of load with depth, its loss per kelvin and per decade of
+time. So are its growth with heat, its runout and its wear, while the software believes the rig file's figures. Each run
+measures two loads at three temperatures; its table of stiffness is compared with the truth. The true depth in a
+condition follows from the force on record and the twin's law of contact. Prints a line a figure and exits 1 where one
+misses.
 """
 
 from __future__ import annotations
@@ -35,13 +36,13 @@ from tests.campaigns.lives import RUBBER_EXPANSION
 
 SEEDS, SAMPLE = 20, 2
 HELD: Final = 0.9
-"""Share of the seeds, and of all conditions, whose stated interval has to hold the truth: 18 of 20."""
+"""Required share of seeds, and of all conditions, whose stated interval contains the truth: 18 of 20."""
 AMBIENT_C: Final = 23.0
 """Of the simulated rig: its stiffness is stated at this temperature."""
 WIDEST_RELAXATION, WIDEST_SOFTENING, WIDEST_STIFFNESS = 0.03, 0.004, 0.1
-"""An interval (median of U) that is wider says nothing [A]: relaxation a decade, softening 1/K, stiffness (share)."""
+"""A wider interval (median of U) is useless [A]: relaxation a decade, softening 1/K, stiffness (share)."""
 TOUCHING_N: Final = 5.0
-"""Above this the record's force is a contact."""
+"""The record's force above this counts as contact."""
 RECIPE = """recipe: how stiff
 specimens: [{compound: "1#"}]
 measure:
@@ -56,8 +57,8 @@ grids:
 
 
 class Rubber(NamedTuple):
-    """What is put into the twin: N/mm at 200 N, exponent, shares of the load lost in a kelvin and in a decade, the rest
-    of its beliefs as overrides."""
+    """The twin's truth: N/mm at 200 N, exponent, shares of the load lost per kelvin and per decade, and the remaining
+    differences from belief as overrides."""
 
     seed: int
     reference_n_mm: float
@@ -78,7 +79,7 @@ class Rubber(NamedTuple):
 
 
 def drawn(seed: int) -> Rubber:
-    """Draw a rubber, and how its wear, growth and runout differ from what is believed."""
+    """Draw a rubber, and the differences of its wear, growth and runout from the beliefs."""
     draw = Random(f"stiffness {seed}")
     others = (
         f"sim.abrasion.wear_rate={0.08 * exp(draw.uniform(-1.1, 1.1)):.4f}",
@@ -100,12 +101,12 @@ class Judged(NamedTuple):
 
     @property
     def held(self) -> bool:
-        """Return whether the interval holds the truth."""
+        """Return whether the interval contains the truth."""
         return abs(self.found.value - self.truth) <= self.found.expanded
 
 
 class Found(NamedTuple):
-    """What a run says of its rubber."""
+    """A run's results about its rubber."""
 
     rubber: Rubber
     exit_code: int
@@ -172,7 +173,7 @@ def true_stiffness(reader: RunReader, rubber: Rubber) -> dict[int, float]:
 
 
 def figures(found: Sequence[Found]) -> Iterator[tuple[str, bool]]:
-    """Yield every figure in words, and whether it is kept."""
+    """Yield every figure in words, and whether it passes."""
     ended = sum(one.exit_code == 0 for one in found)
     yield f"runs that ended in order: {ended} of {len(found)} (asked: all)", ended == len(found)
     for name, listed, widest in (
@@ -208,7 +209,7 @@ def told(one: Found) -> str:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run everything; 1 where a figure misses."""
+    """Run everything; return 1 if a figure misses."""
     about = (__doc__ or "").partition("\n")[2]
     parser = argparse.ArgumentParser("python -m tests.campaigns.stiffness", description=about)
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} seeds instead of {SEEDS}")

@@ -1,10 +1,11 @@
-"""`python -m tests.campaigns.stopped [--sample]`: the heat in a contact of which one part stands, at the worst moments.
+"""`python -m tests.campaigns.stopped [--sample]`: the heat in a contact with one part at standstill, at the worst
+moments.
 
 Rig files and recipes are drawn by seed: late scans of 20 to 150 ms, weak or strong brakes and torque limits, slow or
 quick scans, any compound, load and temperature. Without a standstill relay `tester check` accepts the recipe or refuses
-it. An accepted one runs on a twin unlike its file; in its contacts the belt or the wheel jams beside a scan as late as
-it may be, something holds the belt fast, or one part does not brake. No case may reach harm. A refused one is accepted
-with the relay, its record must name what it counts on, and the same faults show what the relay is for.
+it. An accepted one runs on a twin that differs from its file; in its contacts the belt or the wheel jams together with
+the latest allowed scan, something blocks the belt, or one part does not brake. No case may reach harm. A refused recipe
+is accepted with the relay, its record must name this condition, and the same faults show the relay's purpose.
 """
 
 from __future__ import annotations
@@ -36,18 +37,18 @@ ACCEPTED, REFUSED = 40, 12
 """Rigs with a recipe that `check` accepts without the relay, and refuses."""
 SAMPLE_ACCEPTED, SAMPLE_REFUSED = 4, 1
 MOMENTS = 16
-"""Of each run at which faults begin; in a sample a half."""
+"""Moments of each run at which faults begin; half as many in a sample."""
 CONTACT_S = (0.02, 3.0)
 """Between two of them in contact, s; a soak is skipped after the first."""
 NO_RELAY, RELAY = "arming.standstill_relay=false", "arming.standstill_relay=true"
 MOST_N, HALVINGS, HEAVIEST = 430.0, 6, 0.7
 """Greatest load; halvings of the range up to it; share of the accepted rigs with the greatest load accepted."""
 FIRM = 0.8
-"""Share of its load from which a contact is tried: the heat of less is less."""
+"""Minimum share of its load at which a contact is tried: less load means less heat."""
 WATCHED_S = 1.5
 WEAK = {axis: FaultKind(f"{axis} brakes weakly", partial(BrakesWeakly, axis), ALWAYS, MAY, unit="%", value=2.0)
         for axis in ("wheel", "belt")}  # fmt: skip
-"""Only in this campaign: what a part that does not brake does beside any other fault is bounded here."""
+"""Only in this campaign: the effect of a part that does not brake, together with any other fault, is bounded here."""
 HELD = "belt slips on its roller 100 %"
 
 _TEXT = """\
@@ -66,7 +67,7 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class Drawn:
-    """A rig file and a recipe; ``unlike``: what only the twin is."""
+    """A rig file and a recipe; ``unlike``: differences of the twin."""
 
     text: str
     file: tuple[str, ...]
@@ -81,7 +82,7 @@ class Drawn:
         return replace(self, text=text, name=name, load_n=load_n)
 
     def heaviest(self) -> Drawn:
-        """Return the same at about the greatest load that ``check`` accepts without the relay."""
+        """Return the same at approximately the greatest load that ``check`` accepts without the relay."""
         best, most_n = self, MOST_N
         for _ in range(HALVINGS):
             tried = self.at_load(0.5 * (best.load_n + most_n))
@@ -89,14 +90,15 @@ class Drawn:
         return best
 
     def accepted(self, relay: str) -> bool:
-        """Tell whether ``check`` accepts the recipe on the rig with this line about the relay."""
+        """Return whether ``check`` accepts the recipe on the rig with this line about the relay."""
         rig = load_rig("sim", (*self.file, relay), accept_risk="drawn")
         return not check(self.text, rig, PART, "drawn.yaml")
 
 
 @dataclass(slots=True)
 class Outcome:
-    """What came of a drawn rig: heat by fault (J, text), what its record names, and a trip before any fault."""
+    """The result of a drawn rig: heat by fault (J, text), the conditions that its record names, and a trip before any
+    fault."""
 
     drawn: Drawn
     heat: list[tuple[float, str]] = field(default_factory=list[tuple[float, str]])
@@ -189,7 +191,7 @@ def rigs(seed: int, accepted: int, refused: int) -> Iterator[tuple[Drawn, str]]:
 
 
 def figures(outcomes: list[tuple[Outcome, str]], count: int) -> list[Figure]:
-    """Return what is asked of the outcomes."""
+    """Return the figures of the outcomes."""
     alone = [one for one, relay in outcomes if relay == NO_RELAY]
     beside = [one for one, relay in outcomes if relay == RELAY]
     heat = [row for one in alone for row in one.heat]

@@ -1,11 +1,11 @@
-"""Mistakes of wiring, scaling and typing on the twin: each has to be named, and nothing on a clean rig.
+"""Mistakes of wiring, scaling and typing on the twin: each must be named, and none on a clean rig.
 
     python -m tests.campaigns.mistakes [--sample] [--track] [--seeds N] [--list FILE.yaml] [NAME...]
 
-In virtual time. A mistake is named where what the doctor, or the commissioning, says of the rig matches what has to be
-said of it. The doctor's exit code has to be 0 exactly where a run on the same machine arms. ``--sample``: one seed of
-every second mistake, without those that have to be driven. ``--list``: another hand's list for the doctor
-(``written``), of which nine in ten have to be named. Exit code 1 on a miss.
+In virtual time. A mistake counts as named if a finding of the doctor, or of commissioning, matches the expected text.
+The doctor's exit code must be 0 exactly if a run on the same machine arms. ``--sample``: one seed of every second
+mistake, without those that need motion. ``--list``: another author's list for the doctor (``written``), nine in ten of
+which must be named. Exit code 1 on a miss.
 """
 
 from __future__ import annotations
@@ -28,24 +28,24 @@ from tests.campaigns.mistakes.mistake import Mistake
 from tests.campaigns.mistakes.written import read_list
 
 LEAST = 20
-"""So many kinds of mistakes are to be named."""
+"""Required number of named kinds of mistakes."""
 LISTED_SHARE = 0.9
-"""Least share of another hand's list that is to be named."""
+"""Minimum named share of another author's list."""
 SOURCES = ("by_doctor", "by_answers", "by_track", "by_commissioning")
-"""Modules of this package that bring ``MISTAKES`` and ``clean``, quick ones first."""
+"""Modules of this package that define ``MISTAKES`` and ``clean``, quick ones first."""
 SECOND_HAND = Path(__file__).with_name("second_hand.yaml")
 """Mistakes by another author than the probes'."""
 CLEAN_SEEDS = 10
 
 
 def sources(names: tuple[str, ...] = SOURCES) -> list[ModuleType]:
-    """Return the modules that are there."""
+    """Return the existing modules."""
     package = "tests.campaigns.mistakes"
     return [import_module(f"{package}.{name}") for name in names if find_spec(f"{package}.{name}") is not None]
 
 
 def named(mistake: Mistake, seeds: range) -> Figure:
-    """Return in how many seeds a mistake was named; a miss shows what was said instead."""
+    """Return in how many seeds a mistake was named; a miss shows the actual findings."""
     missed: list[str] = []
     for seed in seeds:
         found = mistake.find(seed)
@@ -56,7 +56,7 @@ def named(mistake: Mistake, seeds: range) -> Figure:
 
 
 def agreed(mistakes: Sequence[Mistake], seeds: range) -> Figure:
-    """Return where the doctor's exit code contradicts a run of the same machine."""
+    """Return the cases in which the doctor's exit code contradicts a run of the same machine."""
     wrong = [
         f"{mistake.name}, seed {seed}: {why}"
         for mistake in mistakes for seed in seeds if (why := mistake.disagrees(seed))
@@ -65,7 +65,7 @@ def agreed(mistakes: Sequence[Mistake], seeds: range) -> Figure:
 
 
 def unfounded(name: str, clean: Callable[[int], list[str]], seeds: range) -> Figure:
-    """Return how many clean rigs something was said of."""
+    """Return how many clean rigs have findings."""
     said = {seed: found for seed in seeds if (found := clean(seed))}
     value = [f"seed {seed}: {'; '.join(found)}" for seed, found in said.items()]
     return equal(f"{len(seeds)} clean rigs: named by {name}", value, [])
@@ -89,7 +89,7 @@ def figures(modules: list[ModuleType], seeds: int, clean_seeds: int, wanted: lis
 
 
 def listed(path: Path, seeds: int) -> Iterator[Figure]:
-    """Measure another hand's list."""
+    """Measure another author's list."""
     mistakes, named_ones = mistakes_of(read_list(path)), 0
     for mistake in mistakes:
         figure = named(mistake, range(seeds))

@@ -1,9 +1,9 @@
-"""Wrong answers to commissioning, on a machine that is as its file says: none may pass, or become advice.
+"""Wrong answers to commissioning, on a machine that matches its file: none may pass, or become advice.
 
 A person types a wrong value at a question: ten times too much or too little (mm and cm), newtons as kilograms, the
-other sign, only the way since the last key, exchanged digits, nothing at all, or takes an answer back. One who notices
-it at the second question passes the step with the right values. One who insists is refused, and no line for the rig
-file is advised, unless the factor is one that a gear can have, or within what a diameter explains.
+other sign, only the distance since the last key, swapped digits, nothing at all, or takes an answer back. A person who
+notices it at the second question passes the step with the right values. A person who insists is refused, and no line
+for the rig file is advised, unless the factor is one that a gear can have, or that a diameter explains.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from tests.campaigns.mistakes.mistake import Mistake
 from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench
 
 ASKING: Final = tuple(step for step in STEPS if step.seat is not None and step.name not in ("rolling", "thermometer"))
-"""The steps that ask for quantities."""
+"""The steps with questions for quantities."""
 WRONG: Final[Mapping[str, Callable[[float, float], float]]] = {
     "ten times too much": lambda right, last: 10.0 * right,
     "a tenth": lambda right, last: 0.1 * right,
@@ -35,17 +35,17 @@ WRONG: Final[Mapping[str, Callable[[float, float], float]]] = {
     "only since the last key": lambda right, last: right - last,
     "digits exchanged": lambda right, last: _exchanged(right),
 }
-"""Wrong values, from the right one and the reading before the last key."""
+"""Wrong values, computed from the right one and the reading before the last key."""
 BACK_SHARE: Final = 0.1
 MOST_BACKS: Final = 40
 PARTS: Final = {"first": ("direction", "first read"), "further": ("whole read",)}
-"""What is read anew after each motion."""
+"""Quantities read again after each motion."""
 PASSES: Final = 5e-3
-"""Greatest error of a scale or a gain that is on record after all."""
+"""Greatest allowed error of a recorded scale or gain."""
 
 
 def _exchanged(right: float) -> float:
-    """Return a number whose first two digits are exchanged."""
+    """Return a number with its first two digits swapped."""
     digits = f"{abs(right):.2f}"
     places = [place for place, one in enumerate(digits) if one.isdigit()][:2]
     first, second = places
@@ -54,10 +54,12 @@ def _exchanged(right: float) -> float:
 
 
 class Errs(TwinPerson):
-    """Answers some questions wrongly, by a seed, and mends it when asked once more; or insists at one question."""
+    """Answers some questions wrongly, by a seed, and corrects the answer when asked again; or insists at one
+    question."""
 
     def __init__(self, seed: int, insists_at: str = "", wrong: str = "") -> None:
-        """``insists_at``: the key of the question that is always answered with ``wrong``; "": every third, mended."""
+        """``insists_at``: the key of the question that is always answered with ``wrong``; "": every third,
+        corrected."""
         super().__init__()
         self.random = Random(seed)
         self.insists_at, self.wrong = insists_at, wrong
@@ -92,7 +94,7 @@ class Errs(TwinPerson):
         return right
 
     def _right(self, question: Question) -> str:
-        """Return the right answer: of a way that was read before its instrument was set to zero, as it was read."""
+        """Return the right answer; a distance read before its instrument was set to zero stays as read."""
         key = question.key.removeprefix(ONCE_MORE)
         words = key.split()
         if words[0] != "jog":
@@ -123,7 +125,7 @@ def commissioned(seed: int, person: Errs, names: tuple[str, ...] = ()) -> tuple[
 
 
 def mended(seed: int) -> list[str]:
-    """Return what is wrong after a person who mends every wrong answer: what is not done, or off."""
+    """Return the faults after a person corrects every wrong answer: steps not done, or values off."""
     person = Errs(seed)
     bench, ended = commissioned(seed, person)
     wrong = [ended] if ended else []
@@ -146,11 +148,11 @@ QUESTIONS: Final = (
     ("home", "angle sideslip"),
     ("touch", "diameter"),
 )  # fmt: skip
-"""Each question for a quantity that decides something, with its step."""
+"""Each question for a quantity that matters, with its step."""
 
 
 def insisted(seed: int, step: str, key: str, kind: str) -> str:
-    """Return what is wrong with how a wrong answer ended that a person insists on; "" if it is refused soundly."""
+    """Return the fault in the outcome of a wrong answer that a person insists on; "" if it is properly refused."""
     person = Errs(seed, key, kind)
     needed = ("touch", "home") if step == "touch" else (step,)
     _, ended = commissioned(seed, person, needed)
@@ -186,6 +188,6 @@ MISTAKES: Final[tuple[Mistake, ...]] = (
 
 
 def clean(seed: int) -> list[str]:
-    """Return what is said of a person who errs nowhere: nothing."""
+    """Return the findings about a person without errors: none."""
     _, ended = commissioned(seed, Errs(seed, "nowhere"), ("identify", "jog belt"))
     return [ended] if ended else []

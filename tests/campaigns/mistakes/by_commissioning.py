@@ -1,7 +1,7 @@
-"""Mistakes that commissioning has to name: a machine that is not what its rig file believes, a person who mistypes.
+"""Mistakes that commissioning must name: a machine that differs from its rig file, a person who mistypes.
 
-Each is commissioned on the twin up to the first refusal, in virtual time; a clean rig has to pass every step that has
-the rig on its wires.
+Each is commissioned on the twin up to the first refusal, in virtual time; a clean rig must pass every step that uses
+the rig's wires.
 """
 
 from __future__ import annotations
@@ -41,7 +41,7 @@ def look(
     built: Built | None = None,
     person: TwinPerson | None = None,
 ) -> list[str]:
-    """Commission a rig of a seed; return what was found. ``steps``: only these, else all that have the rig on wires."""
+    """Commission a rig of a seed; return the findings. ``steps``: only these; default: all that use the rig's wires."""
     wanted = tuple(step for step in STEPS if (step.name in steps if steps else step.seat is not None))
     with TemporaryDirectory() as folder:
         return _found(
@@ -58,7 +58,7 @@ def look(
 
 
 def scaled(name: str, factor: float) -> RigConfig:
-    """Return a machine whose axis goes ``factor`` times as far as the rig file says."""
+    """Return a machine whose axis moves ``factor`` times as far as in the rig file."""
     rig = believed()
     axis = rig.axes.driven()[name]
     new = replace(
@@ -70,7 +70,7 @@ def scaled(name: str, factor: float) -> RigConfig:
 
 
 def without_deadline(name: str) -> RigConfig:
-    """Return a rig whose drive waits for setpoints for ever: what its file may say only with a risk accepted."""
+    """Return a rig whose drive waits for setpoints for ever: its file may state this only with an accepted risk."""
     rig = believed()
     new = replace(rig.axes.driven()[name], rpdo_deadline_s=0.0)
     return replace(rig, axes=replace(rig.axes, **{name: new}))
@@ -92,12 +92,12 @@ def cross(kind: str, world: WheelRig) -> None:
 
 
 def gain(percent: float, world: WheelRig) -> None:
-    """Let the load cell's Fz have another gain."""
+    """Change the gain of the load cell's Fz."""
     world.cell.source = SpoiledForces(world.cell.source, "gain", percent)
 
 
 def see(kind: str, size: float, world: WheelRig) -> None:
-    """Let the thermometer show something else: ``gain`` is what a wrong emissivity does, per cent of the excess."""
+    """Change the thermometer's reading: ``gain`` is the effect of a wrong emissivity, per cent of the excess."""
     world.ir.source = SpoiledTemperature(world.ir.source, kind, size, 0.0, 23.0, "thermometer")
 
 
@@ -107,12 +107,12 @@ def swap(world: WheelRig) -> None:
 
 
 def grow(share: float, world: WheelRig) -> None:
-    """Put wheels on of another diameter."""
+    """Mount wheels of another diameter."""
     world.plant.set_size(share)
 
 
 def misread(gain: float, world: WheelRig) -> None:
-    """Let the press's drive measure its torque with another gain."""
+    """Change the gain of the torque measured by the press's drive."""
     world.axes["press"].misread_torque(gain, 0.0)
 
 
@@ -123,7 +123,7 @@ def weld(world: WheelRig) -> None:
 
 
 def deafen(name: str, world: WheelRig) -> None:
-    """Let a drive take its heartbeat consumer and not watch it."""
+    """Let a drive accept its heartbeat consumer but not monitor it."""
     drive = world.axes[name]
     drive.store.hooks.pop(DEAF, None)
 
@@ -143,7 +143,7 @@ class Mistypes(TwinPerson):
 
 
 class Silences(TwinPerson):
-    """Switches a watchdog off at its device before it is tried out."""
+    """Switches a watchdog off at its device before its test."""
 
     def __init__(self, key: str) -> None:
         super().__init__()
@@ -222,5 +222,5 @@ MISTAKES: tuple[Mistake, ...] = _mistakes()
 
 
 def clean(seed: int) -> list[str]:
-    """Return what is said of a rig without a mistake: nothing."""
+    """Return the findings about a rig without a mistake: none."""
     return look(seed)

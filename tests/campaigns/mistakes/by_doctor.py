@@ -1,4 +1,4 @@
-"""Mistakes that can be seen without motion: the doctor looks at the twin, which is not as its rig file says."""
+"""Mistakes detectable without motion: the doctor examines a twin that differs from its rig file."""
 
 from __future__ import annotations
 
@@ -42,12 +42,12 @@ CLEAN: Final[tuple[Written, ...]] = (
     ),
     Written("adapters that hear themselves", "", echo=True),
 )
-"""Rigs that are as their files say."""
+"""Rigs that match their files."""
 
 
 @cache
 def _looked(name: str, seed: int) -> tuple[list[str], str]:
-    """Return what the doctor says of a mistake's rig, and how its exit code contradicts the run that follows."""
+    """Return the doctor's findings about a mistake's rig, and how its exit code contradicts the following run."""
     written, rebuilt = _BY_NAME[name]
     case = Case(written, seed, rebuilt)
     findings = case.findings()
@@ -55,7 +55,7 @@ def _looked(name: str, seed: int) -> tuple[list[str], str]:
 
 
 def clean(seed: int) -> list[str]:
-    """Return the warnings and faults that are found on a rig that is as its file says, and a wrong exit code."""
+    """Return the warnings and faults found on a rig that matches its file, and a wrong exit code."""
     written = CLEAN[seed % len(CLEAN)]
     case = Case(written, seed)
     findings = case.findings()
@@ -64,7 +64,7 @@ def clean(seed: int) -> list[str]:
 
 
 def mistakes_of(entries: Sequence[Written], rebuilt: dict[str, Rebuilt] | None = None) -> tuple[Mistake, ...]:
-    """Return the mistakes of a list; ``rebuilt``: by their names, what else is done to their machines."""
+    """Return the mistakes of a list; ``rebuilt``: by name, further changes to their machines."""
     for entry in entries:
         _BY_NAME[entry.mistake] = entry, (rebuilt or {}).get(entry.mistake)
     return tuple(
@@ -80,7 +80,8 @@ def mistakes_of(entries: Sequence[Written], rebuilt: dict[str, Rebuilt] | None =
 _BY_NAME: dict[str, tuple[Written, Rebuilt | None]] = {}
 
 
-# -- machines that no key states --------------------------------------------------------------------------------------
+# -- machines that no key can describe
+# --------------------------------------------------------------------------------------
 
 
 def _a_stranger(rig: Any) -> Any:

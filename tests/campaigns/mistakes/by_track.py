@@ -1,6 +1,6 @@
-"""Mistakes that commissioning a specimen on a track has to name, for a linear track in a chamber and for a disc.
+"""Mistakes that commissioning of a specimen on a track must name, for a linear track in a chamber and for a disc.
 
-Each is commissioned on the twin, only the step that has to find it (and those it needs), in virtual time.
+Each is commissioned on the twin, only the step that must find it (and those it needs), in virtual time.
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ Built = Callable[[TrackRig], None]
 
 
 def nothing(world: TrackRig) -> None:
-    """Leave a machine as it is."""
+    """Leave a machine unchanged."""
 
 
 def look(
@@ -48,7 +48,7 @@ def look(
     person: Callable[[], TrackPerson] = TrackPerson,
     keys: tuple[str, ...] = (),
 ) -> list[str]:
-    """Commission a rig of a seed; return what was found. ``keys``: of the machine on which a recipe runs."""
+    """Commission a rig of a seed; return the findings. ``keys``: of the machine on which a recipe runs."""
     with TemporaryDirectory() as folder:
 
         def run(name: str, text: str) -> Mapping[str, Any]:
@@ -65,7 +65,7 @@ class Wrong(TrackPerson):
     """Answers some questions for a quantity wrongly, and insists."""
 
     def __init__(self, begins: str | tuple[str, ...], wrong: Callable[[float], float]) -> None:
-        """``begins``: beginnings of the questions' keys; ``wrong``: makes the typed value of the right one."""
+        """``begins``: beginnings of the questions' keys; ``wrong``: turns the right value into the typed one."""
         super().__init__()
         self.begins, self.wrong = begins, wrong
 
@@ -76,7 +76,7 @@ class Wrong(TrackPerson):
 
 
 class OtherWeights(TrackPerson):
-    """Takes a set of weights for another one."""
+    """Mistakes a set of weights for another."""
 
     def prepare(self, question: Question) -> None:
         super().prepare(question)
@@ -121,7 +121,7 @@ def move(drag_n: float, varies_n: float, world: TrackRig) -> None:
 
 
 def warm(name: str, kelvin: float, world: TrackRig) -> None:
-    """Let a thermometer, or the chamber's, have an offset."""
+    """Give a thermometer, or the chamber's, an offset."""
     device: Any = world.chamber if name == "chamber" else world.devices[name]
     assert name == "chamber" or isinstance(device, IrSlave)
     device.source = SpoiledTemperature(device.source, "offset", kelvin, 0.0, 23.0, name)
@@ -158,7 +158,7 @@ def shift(radius_mm: float, world: TrackRig) -> None:
 
 
 def show(scale: float, offset_mm: float, world: TrackRig) -> None:
-    """Let the sensor of the arm's height have another scale and zero."""
+    """Change scale and zero of the arm's height sensor."""
     sensor = world.devices["height sensor"]
     assert isinstance(sensor, SensorSlave)
     plant = world.plant
@@ -166,7 +166,7 @@ def show(scale: float, offset_mm: float, world: TrackRig) -> None:
 
 
 class LeaseOff(TrackPerson):
-    """Switches the chamber's lease off before it is tried."""
+    """Switches the chamber's lease off before its test."""
 
     def prepare(self, question: Question) -> None:
         super().prepare(question)
@@ -245,7 +245,7 @@ SHOWN: Final = (
     ("zero off by 0.4 mm", "height sensor: its zero is", 1.0, 0.4),
     ("set with a thinner specimen", "height sensor: its zero is", 1.0, -0.4),
 )
-"""What is wrong with the sensor of the arm's height, how it is named, its scale, and its zero in mm."""
+"""Faults of the arm's height sensor: name, expected finding, scale, and zero in mm."""
 
 
 def _disc() -> list[Mistake]:
@@ -275,5 +275,5 @@ MISTAKES: Final[tuple[Mistake, ...]] = (*_of_any(GROSCH), *_linear(), *_of_any(D
 
 
 def clean(seed: int) -> list[str]:
-    """Return what is found on clean rigs of both kinds: nothing."""
+    """Return the findings on clean rigs of both kinds: none."""
     return [text for kind in (GROSCH, DISC) for text in look(seed, kind, (*ON_WIRES, "first"))]

@@ -1,22 +1,20 @@
-"""Mistakes that are written as data: what is wrong with a machine, its rig file or its computer, and what names it.
+"""Mistakes written as data: a fault of a machine, its rig file or its computer, and the finding that names it.
 
-A list of them is a YAML file (``doctor.yaml``; another hand's by ``--list``), a mapping for each, of which ``mistake``
-and ``named`` must be there::
+A list of them is a YAML file (``doctor.yaml``; another author's by ``--list``), one mapping each, with ``mistake`` and
+``named`` required::
 
     - mistake: load cell at 150 N unloaded     # its name
-      kind: sim                                # the packaged rig; sim is the default
-      rig: ["axes.belt.rated_torque=12 N m"]   # as --set: the rig file that doctor and run are given
-      machine: ["axes.belt.node_id=12"]        # as --set: the machine as it stands
-      beyond: {axes.belt.node_id: 1}           # the machine, past every check of a rig file
-      faults: ["load cell offset 150 N"]       # of sim.faults, begun before the doctor looks
-      objects: {belt: {"6080:00": 300}}        # what a drive's object holds, in hexadecimal index and sub-index
-      registers: {jacket: {26: 1200}}          # what a register of a Modbus device holds
-      echo: true                               # its serial adapters hear what they send themselves
-      computer: {latency_ms: 16}               # latency_ms, missing, forbidden, free_bytes, can_bitrate, can_state
-      named: "load cell: .*150"                # a regular expression that a printed warning or fault has to match
-      run: refuses                             # where it cannot be measured: a run in memory has no adapters
+      kind: sim                                # the packaged rig; sim is the default rig: ["axes.belt.rated_torque=12 N
+      m"]   # as --set: the rig file of doctor and run machine: ["axes.belt.node_id=12"]        # as --set: the real
+      machine beyond: {axes.belt.node_id: 1}           # the machine, past every check of a rig file faults: ["load cell
+      offset 150 N"]       # of sim.faults, begun before the doctor looks objects: {belt: {"6080:00": 300}} # values of
+      a drive's objects, by hexadecimal index and sub-index registers: {jacket: {26: 1200}}          # values of a
+      Modbus device's registers echo: true                               # its serial adapters receive their own
+      transmissions computer: {latency_ms: 16}               # latency_ms, missing, forbidden, free_bytes, can_bitrate,
+      can_state named: "load cell: .*150"                # a regular expression that a printed warning or fault must
+      match run: refuses                             # if it cannot be measured: a run in memory has no adapters
 
-The same machine is looked at by the doctor and then run: what its exit code has to agree with.
+The doctor examines the machine, then the same machine runs: the doctor's exit code must agree with the run.
 """
 
 from __future__ import annotations
@@ -54,19 +52,19 @@ from tester.store.recorder import NullRecorder
 from tests.tester.doctor.fake_computer import CELL, FakeComputer, ip_link, on_adapters
 
 WATCHED_S: Final = 3.0
-"""The doctor watches so long, s of rig time: sixty heartbeats, some hundred readings of the load cell."""
+"""Observation time of the doctor, s of rig time: sixty heartbeats, some hundred readings of the load cell."""
 ARMED_S: Final = 10.0
-"""A run that has been under way so long has armed, s of rig time: its first contact follows, if it has not been."""
+"""A run has armed by this rig time, s; its first contact is then past, or follows."""
 GIVEN_UP_S: Final = 120.0
 RECIPES: Final = {"sim": "quickstart", "grosch": "grosch", "pin-on-disc": "pin-on-disc"}
-"""The recipe that is run on a packaged rig."""
+"""The recipe for a packaged rig."""
 Runs = Literal["arms", "refuses"]
 Rebuilt = Callable[[Any], Any]
 
 
 @dataclass(frozen=True, slots=True)
 class Written:
-    """A mistake as its file states it; the module states the keys."""
+    """A mistake as in its file; the module documents the keys."""
 
     mistake: str
     named: str
@@ -83,7 +81,7 @@ class Written:
 
 
 def read_list(path: Path) -> tuple[Written, ...]:
-    """Return the mistakes in a file. Raises TypeError for a key that there is not, OSError, yaml.YAMLError."""
+    """Return the mistakes in a file. Raises TypeError for an unknown key, OSError, yaml.YAMLError."""
     return tuple(Written(**entry) for entry in yaml.safe_load(path.read_text(encoding="utf-8")))
 
 
@@ -97,7 +95,7 @@ class NoComputer:
 
 
 class EchoingLine(WatchedLine):
-    """The port of an adapter that hears what it sends, once its last bit has left."""
+    """The port of an adapter that receives its own transmission, once the last bit has left."""
 
     def __init__(self, inner: LinePort, byte_s: float) -> None:
         """``byte_s``: time of one byte on the line, s."""
@@ -124,10 +122,11 @@ class EchoingLine(WatchedLine):
 
 
 class MistakenWires(SimulatedWires):
-    """The wires of a machine with mistakes, whose faults go on while time passes."""
+    """The wires of a machine with mistakes, whose faults continue while time passes."""
 
     def __init__(self, built: Rig, seed: int, faults: Sequence[str] = (), *, echo: bool = False) -> None:
-        """Switch the machine on, with its faults from the beginning; ``echo``: its adapters hear themselves."""
+        """Switch the machine on, with its faults from the beginning; ``echo``: its adapters receive their own
+        transmissions."""
         self._built, self._echo = built, echo
         self._ports, self.world, _ = simulated_ports(built, seed, None, FaultyCanWire)
         self._now_s = 0.0
@@ -137,7 +136,7 @@ class MistakenWires(SimulatedWires):
         self._script.act(self._scene, 0.0)
 
     def line(self, name: str, config: LineConfig) -> LinePort:
-        """Return the line, as its adapter is."""
+        """Return the line with its adapter's behaviour."""
         line = super().line(name, config)
         byte_s = byte_bits(config.framing, config.parity, config.stop_bits) / config.baud
         return EchoingLine(line, byte_s) if self._echo else line
@@ -154,7 +153,7 @@ class Case:
     """A machine of a seed with a mistake, for the doctor and then for a run."""
 
     def __init__(self, written: Written, seed: int, rebuilt: Rebuilt | None = None) -> None:
-        """Build the machine; nothing has been sent to it. ``rebuilt`` changes it beyond what any key states."""
+        """Build the machine; nothing is sent yet. ``rebuilt`` changes it in ways that no key can describe."""
         self.written = written
         self.rig: Rig = load_rig(written.kind, tuple(written.rig))
         built = load_rig(written.kind, tuple(written.machine))
@@ -174,13 +173,13 @@ class Case:
                 slave.written(address, value, 0.0)
 
     def findings(self) -> list[Finding]:
-        """Return everything that the doctor finds."""
+        """Return all of the doctor's findings."""
         computer = _computer(self.written.computer)
         examination = Examination(on_adapters(self.rig), computer, self.wires, Path("runs"), WATCHED_S)
         return [entry.finding for entry in examined(examination)]
 
     def run(self) -> str:
-        """Run the machine up to its first contact; return why it refused or tripped before, "" if it armed."""
+        """Run the machine up to its first contact; return why it refused or tripped earlier, "" if it armed."""
         if self.written.run is not None:
             return "by its list" if self.written.run == "refuses" else ""
         wires, rig = self.wires, self.rig
@@ -225,7 +224,7 @@ def _replaced(config: Any, path: Sequence[str], value: object) -> Any:
 
 
 def _computer(changes: Mapping[str, Any]) -> FakeComputer:
-    """Return the computer with what is wrong with it."""
+    """Return the computer with its faults."""
     computer = FakeComputer()
     known = {"latency_ms", "missing", "forbidden", "free_bytes", "can_bitrate", "can_state"}
     if unknown := set(changes) - known:

@@ -1,1 +1,1 @@
-"""STOP from a browser's socket, with 20 pages that stream, one that is frozen, and wrong codes."""
+"""STOP from a browser's socket, with 20 streaming pages, a frozen one, and wrong codes."""

@@ -1,8 +1,8 @@
-"""`python -m tests.campaigns.page [--sample]`: STOP from a page, and what pages cost the scan.
+"""`python -m tests.campaigns.page [--sample]`: STOP from a page, and the cost of pages to the scan.
 
-A run slides at 100 Hz. Twenty pages stream and one is frozen; a page sends STOP 200 times at random moments, then
-again while 1,000 wrong codes come. Then, in turns with the run alone, how late scans are. Prints a line a figure with
-its limit, and exits with 1 where one misses. A bare loop beside them shows how late the machine itself is.
+A run slides at 100 Hz. Twenty pages stream and one is frozen; a page sends STOP 200 times at random moments, then again
+during 1,000 wrong codes. Then the lateness of scans is measured, in turns with the run alone. Prints a line a figure
+with its limit, and exits with 1 where one misses. A bare loop beside them shows how late the machine itself is.
 """
 
 from __future__ import annotations
@@ -35,11 +35,11 @@ TRIES, SAMPLE = 200, 60
 MEDIAN_MS, MOST_MS = 50.0, 100.0
 PAGES, GUESSES = 20, 1000
 GROWS_MB = 10.0
-"""What the page process may grow by while a page is frozen."""
+"""Maximum growth of the page process while a page is frozen."""
 START_S = 60.0
 FINGER = "finger"
 FLOOD_S = 40.0
-"""Tries made while wrong codes come take so long at most."""
+"""Time limit of tries during wrong codes."""
 
 
 class Pages:
@@ -92,7 +92,7 @@ class Pages:
         return process
 
     def resident_mb(self) -> float:
-        """Return the memory of the page process, MB; NaN where the system does not say."""
+        """Return the memory of the page process, MB; NaN if the system does not report it."""
         try:
             pages = int(Path(f"/proc/{self.process.pid}/statm").read_text().split()[1])
         except OSError:
@@ -123,7 +123,7 @@ class Pages:
 
 
 def figures_of(name: str, tries: list[tuple[float, float, float]], count: int, late_s: float) -> list[Figure]:
-    """Compare tries with what is asked of STOP; ``late_s``: of the bare loops meanwhile."""
+    """Compare tries with the limits of STOP; ``late_s``: of the bare loops at the same time."""
     control = sorted(1e3 * (control_s - sent_s) for sent_s, control_s, _ in tries)
     answers = sorted(1e3 * (answered_s - sent_s) for sent_s, _, answered_s in tries)
     loops = f" (a bare loop of 20 ms is late by up to {1e3 * late_s:.1f} ms)"
@@ -175,7 +175,7 @@ async def measured(folder: Path, count: int, port: int) -> list[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure; 1 where a figure misses."""
+    """Measure; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.page", description="STOP from a page.")
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} tries instead of {TRIES}")
     parser.add_argument("--port", type=int, default=18010, help="port of the page")

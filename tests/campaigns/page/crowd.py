@@ -1,6 +1,6 @@
-"""`python -m tests.campaigns.page.crowd URL ORIGIN KIND WORDS...`: pages that stream, one that never reads, guessers.
+"""`python -m tests.campaigns.page.crowd URL ORIGIN KIND WORDS...`: streaming pages, one that never reads, guessers.
 
-``reads SECRET COUNT``: so many pages that read all they get; ``frozen SECRET``: one that enters and reads no more;
+``reads SECRET COUNT``: so many pages that read everything; ``frozen SECRET``: one that enters and stops reading;
 ``guesses N``: N wrong codes, one after the other from 20 sockets. Prints "there" once it has begun.
 """
 
@@ -18,7 +18,7 @@ SOCKETS = 20
 
 
 async def reads(url: str, origin: str, secret: str) -> None:
-    """Read all that a page gets."""
+    """Read everything that a page receives."""
     async with connect(url, origin=origin, max_size=None, compression=None) as page:  # type: ignore[arg-type]
         await page.send(json.dumps({"type": "enter", "secret": secret}))
         async for _ in page:
@@ -26,7 +26,7 @@ async def reads(url: str, origin: str, secret: str) -> None:
 
 
 async def frozen(url: str, origin: str, secret: str) -> None:
-    """Enter, and read nothing from then on: the buffers fill, as behind a browser that hangs."""
+    """Enter, then read nothing: the buffers fill, as with a hung browser."""
     async with connect(url, origin=origin, max_size=None, max_queue=1, ping_interval=None) as page:  # type: ignore[arg-type]
         await page.send(json.dumps({"type": "enter", "secret": secret}))
         await asyncio.sleep(3600.0)
@@ -42,7 +42,7 @@ async def guesses(url: str, origin: str, first: int, count: int) -> None:
 
 
 async def main(url: str, origin: str, kind: str, *words: str) -> None:
-    """Be so many pages until the process ends, or the codes are tried."""
+    """Run so many pages until the process ends, or all codes are tried."""
     if kind == "guesses":
         each = int(words[0]) // SOCKETS
         tasks = [guesses(url, origin, n * each, each) for n in range(SOCKETS)]

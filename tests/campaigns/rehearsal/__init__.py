@@ -1,1 +1,1 @@
-"""Machines of every kind in processes of their own, their runs killed and resumed, hands at them."""
+"""Machines of every kind in processes of their own: their runs are killed and resumed, with simulated hands."""

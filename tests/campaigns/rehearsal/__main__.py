@@ -1,12 +1,11 @@
 """`python -m tests.campaigns.rehearsal [--sample] [--keep DIR]`: every kind of machine on wires, killed and resumed.
 
 `tester sim` and `tester run --hands` are processes of their own, in real time, over TCP and over pseudo-terminals. At a
-drawn moment one of them gets SIGKILL; then the run is resumed on the same machine, or on one that was started again.
-Compared with the run in one process with the same seed: each condition's coefficient, within both expanded
-uncertainties of this specimen (95 %) in quadrature; the repeats from before the kill, which must be as they were.
-`--sample` rehearses a disc whose run is killed, beside a block whose machine is killed; `--fast` longer recipes of both
-over TCP, with the clocks of machine and run 5 times as fast (drives' data may then be 5 ms old). Exit code 1 if a
-figure misses.
+drawn moment one of them receives SIGKILL; then the run is resumed on the same machine, or on a restarted one. Compared
+with the run in one process with the same seed: each condition's coefficient, within both expanded uncertainties of this
+specimen (95 %) in quadrature; the repeats from before the kill, which must be unchanged. `--sample` rehearses a disc
+whose run is killed, and at the same time a block whose machine is killed; `--fast` longer recipes of both over TCP,
+with the clocks of machine and run 5 times as fast (drives' data may then be 5 ms old). Exit code 1 if a figure misses.
 """
 
 from __future__ import annotations
@@ -38,7 +37,7 @@ Repeat = tuple[int, int, float]
 
 @dataclass(frozen=True, slots=True)
 class Scene:
-    """One rehearsal; ``share``: of the run's time, at which something is killed."""
+    """One rehearsal; ``share``: share of the run's time at which something is killed."""
 
     of: Rehearsed
     door: str
@@ -53,7 +52,7 @@ class Scene:
 
 
 def scenes(sample: bool, quick: bool, seed: int) -> list[Scene]:
-    """Return what is rehearsed, in its order; ``quick``: with fast clocks."""
+    """Return the rehearsals in order; ``quick``: with fast clocks."""
     at = Random(f"rehearsal {seed}")
     if quick:
         return [Scene(of, "TCP", UNBROKEN, 0.0) for of in fast()]
@@ -66,7 +65,7 @@ def scenes(sample: bool, quick: bool, seed: int) -> list[Scene]:
 
 
 def rehearse(scene: Scene, folder: Path, seed: int) -> list[Figure]:
-    """Live a scene and return its figures."""
+    """Run a scene and return its figures."""
     machine = Machine(folder, scene.of, scene.door, seed)
     try:
         here = ended(machine.here(folder / "here"), folder / "here.err", scene.of.longest_s)
@@ -96,15 +95,15 @@ def rehearse(scene: Scene, folder: Path, seed: int) -> list[Figure]:
     except (ValueError, OSError, subprocess.TimeoutExpired) as error:
         written = folder / "run.err"
         trips = words(written, "tripped").split(" | ") if written.exists() else [""]
-        late = all("was late by" in trip for trip in trips)  # a computer that does not keep up is named, no more
+        late = all("was late by" in trip for trip in trips)  # a slow computer is only reported
         return [holds(f"{scene.name}: comes to its end, or names the late computer", late, str(error), "one of both")]
     finally:
         machine.kill()
 
 
 def resumed(machine: Machine, run: Path) -> Path:
-    """Resume a run until it has gone through, as a person does after a trip: a busy computer makes scans late. Raises
-    ValueError with what the last of TRIES wrote.
+    """Resume a run until it finishes, as a person does after a trip: a busy computer makes scans late. Raises
+    ValueError with the output of the last of TRIES.
     """
     errors = machine.folder / "run.err"
     for left in reversed(range(TRIES)):
@@ -120,7 +119,7 @@ def resumed(machine: Machine, run: Path) -> Path:
 
 
 def compare(scene: Scene, here: Path, there: Path, before: Sequence[Repeat]) -> Iterator[Figure]:
-    """Yield the figures of a run that has ended, against the one in one process."""
+    """Yield the figures of a finished run, compared with the one in one process."""
     known, found = conditions(here), conditions(there)
     yield equal(f"{scene.name}: conditions", list(found), list(known))
     shares = [abs(found[name][0] - mu) / math.hypot(u, found[name][1]) for name, (mu, u) in known.items()]
@@ -133,7 +132,7 @@ def compare(scene: Scene, here: Path, there: Path, before: Sequence[Repeat]) -> 
 
 
 def ended(process: subprocess.Popen[str], errors: Path, longest_s: float) -> Path:
-    """Wait for a run and return its folder; raises ValueError with what it wrote if it did not go through."""
+    """Wait for a run and return its folder; raises ValueError with its output if it failed."""
     out, _ = process.communicate(timeout=longest_s)
     if process.returncode != 0:
         raise ValueError(f"exit {process.returncode}: {words(errors)}")
@@ -141,7 +140,7 @@ def ended(process: subprocess.Popen[str], errors: Path, longest_s: float) -> Pat
 
 
 def words(errors: Path, of: str = "") -> str:
-    """Return the last lines, with a word in them, of what a process wrote to people."""
+    """Return the last lines with a word in them of a process's text output."""
     lines = [line for line in errors.read_text(encoding="utf-8").splitlines() if of in line]
     return " | ".join(lines[-6:])
 
@@ -171,7 +170,7 @@ def rig_seconds(run: Path) -> float:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Rehearse; 1 where a figure misses."""
+    """Rehearse; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.rehearsal", description="Machines on wires.")
     parser.add_argument("--sample", action="store_true", help="two kinds beside each other, each killed once")
     parser.add_argument("--fast", action="store_true", help="longer recipes, with clocks 5 times as fast")

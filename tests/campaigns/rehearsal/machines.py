@@ -1,4 +1,4 @@
-"""What is rehearsed: a machine of each kind as `tester sim` shows it, and a short recipe for it."""
+"""The rehearsed machines: one of each kind as `tester sim` provides it, and a short recipe for it."""
 
 from __future__ import annotations
 
@@ -21,8 +21,8 @@ EXAMPLE = Path(__file__).parents[2] / "extension" / "examples" / "kind"
 
 @dataclass(frozen=True, slots=True)
 class Rehearsed:
-    """A machine and its recipe. ``by_hand``: a person raises its arm after a kill; ``times``: how fast it and its
-    runs live.
+    """A machine and its recipe. ``by_hand``: a person raises its arm after a kill; ``times``: speed of its clock and
+    its runs'.
     """
 
     name: str
@@ -32,8 +32,8 @@ class Rehearsed:
     example: bool = False
     times: float = 1.0
     longest_s: float = 600.0
-    """A run that takes longer is given up, s."""
-    """Whether its kind is that of the example package; its rig file is then written beside the recipe."""
+    """Time limit of a run, s."""
+    """Whether its kind comes from the example package; its rig file is then written beside the recipe."""
 
 
 DISC = Rehearsed("pin-on-disc", "pin-on-disc", """\
@@ -96,7 +96,7 @@ def fast() -> tuple[Rehearsed, ...]:
 
 
 class Machine:
-    """`tester sim` in a folder, at addresses that stay the same when it is started again."""
+    """`tester sim` in a folder, at addresses that do not change on a restart."""
 
     def __init__(self, folder: Path, of: Rehearsed, door: str, seed: int) -> None:
         """Choose addresses and write the recipe; ``door``: TCP or ptys; ``seed``: of the simulated machine."""
@@ -116,7 +116,7 @@ class Machine:
         self._process: subprocess.Popen[str] | None = None
 
     def start(self) -> None:
-        """Start it, and wait until it is ready; raises ValueError with what it wrote if it is not."""
+        """Start it, and wait until it is ready; raises ValueError with its output if it is not."""
         arguments = ["sim", "--speed", str(self.of.times), "--rig", self.rig, "--seed", str(self.seed)]
         arguments += ["--control", self.console.partition(":")[2]]
         arguments += ["--write-rig", str(self.folder / "rig.yaml"), *self._options]
@@ -127,7 +127,7 @@ class Machine:
             raise ValueError(f"tester sim: {(self.folder / 'sim.err').read_text(encoding='utf-8')}")
 
     def run(self) -> subprocess.Popen[str]:
-        """Begin a run of the recipe on it, its prompts answered, its hands at work."""
+        """Begin a run of the recipe on it, with answered prompts and simulated hands."""
         arguments = ["run", str(self.folder / "recipe.yaml"), "--rig", str(self.folder / "rig.yaml")]
         return self._program([*arguments, "--out", str(self.folder / "runs")])
 
@@ -166,7 +166,7 @@ class Machine:
 
 
 def tester(arguments: Sequence[str], errors: object) -> subprocess.Popen[str]:
-    """Start the product under test; the example package is found."""
+    """Start the product under test, with the example package on its path."""
     paths = (str(ROOT), str(EXAMPLE), os.environ.get("PYTHONPATH", ""))
     return subprocess.Popen(
         [sys.executable, "-c", COMMAND, *arguments], env=os.environ | {"PYTHONPATH": os.pathsep.join(paths)},
@@ -175,7 +175,7 @@ def tester(arguments: Sequence[str], errors: object) -> subprocess.Popen[str]:
 
 
 def free_port() -> int:
-    """Return the first of ten ports in a row, of which the first is free."""
+    """Return the first of ten consecutive ports; only the first is checked to be free."""
     with socket.socket() as probe:
         probe.bind(("127.0.0.1", 0))
         return min(probe.getsockname()[1], 65000)

@@ -1,6 +1,6 @@
 """`python -m tests.campaigns.repeats [--sample]`: how often the rule for repeats errs, one line a figure.
 
-Exit status 0 when every figure is what is asked for, 1 when one misses it.
+Exit status 0 if every figure passes, 1 if one misses.
 """
 
 from __future__ import annotations
@@ -32,17 +32,17 @@ grids:
 """
 
 TELLING = frozenset({NOT_SHOWN, CARRY_OVER})
-"""Flags by which a condition says that its coefficient was not yet steady."""
+"""Flags of a condition whose coefficient was not yet steady."""
 
 RUN_INS = ((0.10, 94.0), (0.06, 150.0), (0.08, 94.0), (0.15, 60.0))
-"""Excess of the coefficient, and revolutions in which it goes to 1/e."""
+"""Excess of the coefficient, and revolutions in which it falls to 1/e."""
 LEAST_JUDGED = 10
-"""Of fewer conditions 95 % says nothing."""
+"""With fewer conditions 95 % means nothing."""
 LEAST_STABLE = 95.0
-"""Conditions that drift by 1 % a window or not at all, and are to be stable, per cent [A]."""
+"""Required share of stable conditions among those that drift by 1 % a window or not at all, per cent [A]."""
 
 EXPECTED = {0.0: (100, 100), 0.01: (98, 100), 0.02: (6, 20), 0.04: (0, 0)}
-"""Stable conditions, per cent, that a Monte Carlo of the rule gave when it was designed: 100 N, 3# at 55 degC."""
+"""Stable conditions, per cent, from the Monte Carlo of the rule's design: 100 N, 3# at 55 degC."""
 
 
 def cases(of: Pattern, count: int, drift: Drift) -> list[Case]:
@@ -74,9 +74,8 @@ def synthetic(count: int) -> Iterator[Figure]:
 
 
 def _run_ins(of: Pattern, count: int) -> Iterator[Figure]:
-    """Yield how many conditions carry the flag, of those in whose run-in a repeat was refused: make-ups launder these.
-
-    A run-in that refuses no repeat is laundered by none: it is told, and not judged. One at least has to be judged.
+    """Yield how many conditions have the flag, of those in whose run-in a repeat was refused: make-ups launder these. A
+    run-in without a refused repeat needs no make-up, so it is printed and not judged. At least one must be judged.
     """
     judged = 0
     for size, revolutions in RUN_INS:
@@ -100,10 +99,9 @@ def _refused(found: Sequence[Case]) -> float:
 
 
 def _stable(of: Pattern, number: int, drift: float, found: Sequence[Case]) -> Iterator[Figure]:
-    """Yield how many conditions are stable, and how many of these carry no flag, beside what the design gave.
-
-    Good ones are to be stable. At 2 % a window, the limit itself, those without a flag are to be at most what the
-    design's Monte Carlo told, and 2.5 standard deviations of the count.
+    """Yield how many conditions are stable, and how many of these have no flag, beside the design's figures. Good ones
+    must be stable. At 2 % a window, the limit itself, those without a flag may be at most the share of the design's
+    Monte Carlo, plus 2.5 standard deviations of the count.
     """
     stable = 100.0 * sum(case.stable for case in found) / len(found)
     clean = 100.0 * sum(case.stable and not case.carries for case in found) / len(found)
@@ -117,7 +115,7 @@ def _stable(of: Pattern, number: int, drift: float, found: Sequence[Case]) -> It
 
 
 def unground(seeds: int) -> Iterator[Figure]:
-    """Yield in how many runs of the simulated rig a skipped pre-grind is seen on the condition."""
+    """Yield in how many runs of the simulated rig the condition shows a skipped pre-grind."""
     for load in LOADS_N:
         seen = 0
         for seed in range(seeds):
@@ -129,7 +127,7 @@ def unground(seeds: int) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.repeats", description=__doc__)
     parser.add_argument("--sample", action="store_true", help="the short form, for every change")
     sample = parser.parse_args(arguments).sample

@@ -10,7 +10,7 @@ from tester.run.sweep.case import Unseen
 
 
 def run(text: str, seed: int, folder: Path) -> Path:
-    """Carry a recipe out with a seed on the packaged rig; return the run's folder."""
+    """Run a recipe with a seed on the packaged rig; return the run's folder."""
     recipe = folder / "recipe.yaml"
     recipe.write_text(text, encoding="utf-8")
     screen = Unseen()

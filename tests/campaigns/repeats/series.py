@@ -1,8 +1,8 @@
-"""Synthetic block series over the time and temperature that real repeats of the simulated rig had.
+"""Synthetic block series over the times and temperatures of real repeats of the simulated rig.
 
 The pattern is what matters: at 100 N few long bursts, in which temperature rises with time; of 3# at 55 degC many short
-ones. Bursts, durations and temperatures come from a run, the coefficient is made up on top of them: AR(1) noise of 1 %
-and 0.3 s, the compound's sensitivity to temperature, 2 % between repeats, and the drift in question.
+ones. Bursts, durations and temperatures come from a run, the coefficient is synthetic: AR(1) noise of 1 % and 0.3 s,
+the compound's sensitivity to temperature, 2 % between repeats, and the drift under test.
 """
 
 from __future__ import annotations
@@ -39,8 +39,8 @@ measure: {{wheel_speed: 0.8 m/s, repeats: 6, window: 45 rev, temperature_band: 2
 grids:
   - {{name: pattern, slip_velocity: 300 mm/s, load: {load} N, temperature: {temperature} degC}}
 """
-"""A window of 45: a repeat then has revolutions to spare for a transient that is left out. Of a wheel not ground in
-only the coefficients are others, and these are not looked at."""
+"""A window of 45: a repeat then has revolutions to spare for a transient that is left out. A wheel that is not ground
+in differs only in its coefficients, which are not used."""
 
 Drift = Callable[[int, int], float]
 """Share of the coefficient by repeat (from 0) and block of it (from 0)."""
@@ -48,7 +48,7 @@ Drift = Callable[[int, int], float]
 
 @dataclass(frozen=True, slots=True)
 class Pattern:
-    """Repeats as they were on the rig, and the compound's sensitivity, 1/K."""
+    """Repeats as on the rig, and the compound's sensitivity, 1/K."""
 
     name: str
     repeats: tuple[tuple[Block, ...], ...]
@@ -57,19 +57,19 @@ class Pattern:
 
 @dataclass(frozen=True, slots=True)
 class Case:
-    """What became of one condition."""
+    """The result of one condition."""
 
     results: tuple[RepeatResult, ...]
     judgement: Judgement
 
     @property
     def stable(self) -> bool:
-        """Return whether enough repeats count and the drift is shown to be small."""
+        """Return whether enough repeats are valid and the drift is demonstrably small."""
         return len(counting(self.results)) >= LEAST and NOT_SHOWN not in flags_in(self.judgement.flags)
 
     @property
     def carries(self) -> bool:
-        """Return whether the condition carries the flag of a run-in."""
+        """Return whether the condition has the flag of a run-in."""
         return CARRY_OVER in flags_in(self.judgement.flags)
 
     def refused(self, position: int) -> bool:
@@ -79,7 +79,7 @@ class Case:
 
 def pattern(name: str, compound: str, load_n: int, temperature_c: int, per_kelvin: float, run: Callable[..., Path]
             ) -> Pattern:  # fmt: skip
-    """Return the pattern of a condition; ``run`` carries a recipe (text, seed, folder) out and returns its folder."""
+    """Return the pattern of a condition; ``run`` runs a recipe (text, seed, folder) and returns its folder."""
     with TemporaryDirectory() as name_:
         text = RECIPE.format(compound=compound, load=load_n, temperature=temperature_c)
         folders = [run(text, seed, Path(name_)) for seed in range(RUNS)]
@@ -107,7 +107,7 @@ def steady(drift: float, only: int | None = None) -> Drift:
 
 
 def _made(of: Pattern, random: Random, repeat: int, drift: Drift) -> Sequence[Block]:
-    """Return a repeat's blocks: what the rig collects, a transient made up for."""
+    """Return a repeat's blocks: the rig's collection, with extra blocks for a transient."""
     base = of.repeats[random.randrange(len(of.repeats))]
     level, middle = 1.0 + random.gauss(0.0, BETWEEN), sum(b.means.temperature for b in base) / len(base)
     noise = islice(correlated(random), len(base))

@@ -1,4 +1,4 @@
-"""`python -m tests.campaigns.screens [NAME ...] [--sample] [--list] [--captures DIR]`: what is asked of the screen.
+"""`python -m tests.campaigns.screens [NAME ...] [--sample] [--list] [--captures DIR]`: requirements of the screen.
 
 Real terminals, real keys, the installed command, a service on the simulated rig. Prints a line a figure with its limit,
 and exits 1 where one misses.
@@ -32,7 +32,7 @@ def options(arguments: list[str] | None) -> argparse.Namespace:
 
 
 async def measure(topic: Topic, seat: Seat, *, quick: bool) -> int:
-    """Print the figures of a topic and return how many miss; what keeps one from being measured is a miss."""
+    """Print the figures of a topic and return the number of misses; a failed measurement is a miss."""
     missed = 0
     try:
         async for figure in topic.figures(seat, quick=quick):
@@ -45,7 +45,7 @@ async def measure(topic: Topic, seat: Seat, *, quick: bool) -> int:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure the named topics; 1 where a figure misses."""
+    """Measure the named topics; return 1 if a figure misses."""
     read = options(arguments)
     if read.list:
         print("\n".join(f"{topic.name:10} {topic.title}" for topic in TOPICS.values()))

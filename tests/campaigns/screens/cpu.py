@@ -17,13 +17,13 @@ NEAR_AMBIENT = tuple(word for override in OVERRIDES for word in ("--set", overri
 SETTLE_S = 3.0
 SCREEN_PERCENT, SERVICE_PERCENT = 12.0, 5.0
 SNAPSHOTS_PER_S = 3.8
-"""Four a second are sent; the first and the last of a time may lie outside it."""
+"""Four a second are sent; the first and the last may lie outside the time."""
 TICKS_PER_S = 100.0
 """USER_HZ of Linux."""
 
 
 def cpu_s(pid: int) -> float:
-    """Return the CPU time of a process, s, as the system's accounting has it (ps, which rounds to 10 ms at best)."""
+    """Return the CPU time of a process, s, from the system's accounting (ps, which rounds to 10 ms at best)."""
     try:
         with open(f"/proc/{pid}/stat", encoding="ascii") as file:  # noqa: PTH123 - no file
             fields = file.read().rpartition(")")[2].split()
@@ -37,14 +37,14 @@ def cpu_s(pid: int) -> float:
 
 
 def children(pid: int) -> list[int]:
-    """Return the processes that a process has started and that still live."""
+    """Return the live child processes of a process."""
     said = subprocess.run(["ps", "-eo", "pid=,ppid="], capture_output=True, text=True, check=True).stdout
     pairs = [tuple(map(int, line.split())) for line in said.splitlines()]
     return [child for child, parent in pairs if parent == pid]
 
 
 async def share(observer: Observer, pids: list[int], seconds: float) -> list[float]:
-    """Return how much of a core processes take while the wheel slides, %."""
+    """Return the processes' share of a core while the wheel slides, %."""
     await asyncio.sleep(SETTLE_S)
     before, began_s = [cpu_s(pid) for pid in pids], clock.monotonic()
     await asyncio.sleep(seconds)
@@ -64,7 +64,7 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
         try:
             await screen.until(" RUN ")
             await screen.press("F2")
-            await screen.until("✔   mine", 60.0)  # until then it is busy with the checks
+            await screen.until("✔   mine", 60.0)  # until then the checks keep it busy
             await screen.press("F3")
             pids = [screen.process.pid, observer.pid, *children(observer.pid)]
             rows = len(observer.client.trend)

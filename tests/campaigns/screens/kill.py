@@ -1,4 +1,4 @@
-"""SIGKILL of the screen that started a run, in the middle of it: the run's tables stay what they would have been."""
+"""SIGKILL of the screen that started a run, in the middle of the run: this must not change the run's tables."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 SEED = 1
 """Of the moments of the kills."""
 EARLIEST, LATEST = 0.05, 0.9
-"""Share of the run that is done when the screen is killed."""
+"""Share of the run after which the screen is killed."""
 
 
 def tables(run: Path) -> dict[str, bytes]:
@@ -25,7 +25,7 @@ def tables(run: Path) -> dict[str, bytes]:
 
 
 async def one(seat: Seat, observer: Observer, share: float) -> tuple[float, Path]:
-    """Start a run from a screen, kill that after a share of the run; return the share it had and the run."""
+    """Start a run from a screen, kill the screen after a share of the run; return the actual share and the run."""
     before = set(seat.runs.glob("2*"))
     screen = Terminal(seat, ["tui", "--speed", SPEED, "--out", str(seat.runs)])
     try:
@@ -44,7 +44,7 @@ async def one(seat: Seat, observer: Observer, share: float) -> tuple[float, Path
 
 
 async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
-    """Compare with `tester run` of the same recipe and seed, which nobody watched."""
+    """Compare with `tester run` of the same recipe and seed, without a screen."""
     alone = seat.folder / "alone"
     done = seat.tester("run", str(seat.recipe), "--yes", "--out", str(alone))
     if done.returncode:

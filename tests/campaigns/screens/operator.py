@@ -21,7 +21,7 @@ SPEED = "20"
 
 @dataclass(frozen=True, slots=True)
 class Step:
-    """What is pressed, and what is to be seen then. ``keep``: name of its picture, if it is kept."""
+    """Keys to press, and the text that must then appear. ``keep``: name of its picture, if it is kept."""
 
     title: str
     keys: tuple[str, ...]
@@ -65,7 +65,7 @@ STEPS = (
 
 
 async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
-    """Carry out the steps; one that is not seen ends it."""
+    """Carry out the steps, up to the first whose text does not appear."""
     if not available():
         yield holds("operator", True, "not measured: there is no tmux here", "tmux")
         return

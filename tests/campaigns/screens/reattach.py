@@ -1,4 +1,4 @@
-"""A screen that is opened after another one was killed: how soon it shows the run."""
+"""A screen opened after another one was killed: how soon it shows the run."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tests.campaigns.screens.terminal import Terminal
 TIMES, QUICK = 10, 2
 ASKED_S = 1.0
 FIRST, LIVE = "F12 STOP", "Friction"
-"""The last line stands on the first picture; a value's row only where there is a state of the service. The run's."""
+"""The last line is on the first picture; a value's row appears only with a state of the service, the run's."""
 
 
 async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
-    """Kill a screen and open another one, which is to find the run by itself."""
+    """Kill a screen and open another one, which must find the run by itself."""
     first_s: list[float] = []
     live_s: list[float] = []
     async with seat.service() as observer:

@@ -22,20 +22,20 @@ from tester.tui.host import ROLE
 from tests.campaigns.acceptance.bench import COMMAND, ROOT
 
 SCREEN = who_here(ROLE)
-"""What the service calls a screen that is opened here."""
+"""The service's name for a screen opened here."""
 LOOK_S = 0.005
-"""What is waited for is looked at this often, s."""
+"""Polling interval of a wait, s."""
 END_S = 30.0
-"""A service has ended by then, s: it comes to a standstill first."""
+"""A service ends within this time, s: it comes to a standstill first."""
 SLIDING_MM_S, LOADED_N = 50.0, 50.0
 
 
 class NotSeenError(Exception):
-    """What was waited for has not come; the message says what, and what was there instead."""
+    """Timed out: the message gives the awaited event, and the last state."""
 
 
 def installed() -> list[str]:
-    """Return the command as it is installed beside this Python; where it is not, what that command does."""
+    """Return the command installed beside this Python; without one, an equivalent."""
     script = Path(sys.executable).with_name("tester.exe" if os.name == "nt" else "tester")
     return [str(script)] if script.exists() else [sys.executable, "-c", COMMAND]
 
@@ -61,7 +61,7 @@ class Seat:
         }  # fmt: skip
 
     def tester(self, *words: str) -> subprocess.CompletedProcess[str]:
-        """Carry out `tester WORDS` and return how it ended."""
+        """Run `tester WORDS` and return its result."""
         return subprocess.run(
             [*installed(), *words], cwd=self.folder, env=self.environment, capture_output=True, text=True, check=False,
             stdin=subprocess.DEVNULL,
@@ -87,7 +87,7 @@ class Seat:
                 process.wait()
 
     def end_services(self) -> None:
-        """End what a screen has started here: `tester serve` processes that put their runs into this seat's folder."""
+        """End the processes that a screen started here: `tester serve` with runs in this seat's folder."""
         listed = subprocess.run(["ps", "-ewwo", "pid=,args="], capture_output=True, text=True, check=True).stdout
         for line in listed.splitlines():
             if " serve " in line and str(self.runs) in line:
@@ -95,7 +95,7 @@ class Seat:
                     os.kill(int(line.split()[0]), signal.SIGTERM)
 
     async def observer(self, process: subprocess.Popen[bytes] | None = None) -> Observer:
-        """Connect to the service once it is there; raises NotSeenError."""
+        """Connect to the service once it exists; raises NotSeenError."""
         end_s = clock.monotonic() + 30.0
         while clock.monotonic() < end_s and (process is None or process.poll() is None):
             try:
@@ -108,13 +108,13 @@ class Seat:
 
 
 class Observer:
-    """A viewer of the service that notes when each event came. ``pid``: the service's process."""
+    """A viewer of the service that records the time of each event. ``pid``: the service's process."""
 
     def __init__(self, client: Client, pid: int) -> None:
         """Listen from now on."""
         self.client, self.pid = client, pid
         self.heard: list[tuple[float, Event]] = []
-        """With the moment (tester.base.clock.monotonic)."""
+        """With their times (tester.base.clock.monotonic)."""
         self._listening = asyncio.create_task(self._listen())
 
     async def __aenter__(self) -> Observer:
@@ -122,7 +122,7 @@ class Observer:
         return self
 
     async def __aexit__(self, *_: object) -> None:
-        """Stop what runs, and hang up."""
+        """Stop the run, and disconnect."""
         with suppress(LostError, TimeoutError):
             await self.client.command(Stop(fast=True))
         await self.client.close()
@@ -148,7 +148,7 @@ class Observer:
             await asyncio.sleep(LOOK_S)
 
     async def event(self, true: Callable[[Event], bool], after_s: float, what: str, within_s: float = 5.0) -> float:
-        """Wait for an event that came after a moment and return when it came; raises NotSeenError."""
+        """Wait for an event after a moment and return its time; raises NotSeenError."""
         end_s = clock.monotonic() + within_s
         while clock.monotonic() < end_s:
             for came_s, event in self.heard:
@@ -158,11 +158,11 @@ class Observer:
         raise NotSeenError(f"{what}: not within {within_s:g} s")
 
     async def stop_by_screen(self, after_s: float, what: str) -> float:
-        """Wait for the STOP of a screen of this place and return when it came; raises NotSeenError."""
+        """Wait for the STOP of a screen of this place and return its time; raises NotSeenError."""
         return await self.event(lambda event: event.text.startswith(f"stop by {SCREEN}"), after_s, what)
 
     async def controlled(self) -> None:
-        """Wait until a screen has come and has control."""
+        """Wait until a screen is connected and has control."""
         await self.until(lambda state: state.clients.controller == SCREEN, "a screen that controls")
 
     async def sliding(self) -> None:
@@ -171,7 +171,7 @@ class Observer:
 
 
 class Noise:
-    """How late this process, which does nothing else, is woken: what the machine adds to every figure of time."""
+    """The wake-up lateness of this otherwise idle process: the machine adds it to every figure of time."""
 
     def __init__(self) -> None:
         """Watch from now on."""
@@ -193,7 +193,7 @@ class Noise:
 
 
 def slides(state: StateView) -> bool:
-    """Tell whether the wheel slides under load."""
+    """Return whether the wheel slides under load."""
     slip, load = state.value("slip"), state.value("load")
     return (
         state.mode == "RUN" and slip is not None and load is not None and slip.value is not None
@@ -202,6 +202,6 @@ def slides(state: StateView) -> bool:
 
 
 def median(values: Sequence[float]) -> float:
-    """Return the middle one, NaN of none."""
+    """Return the median, NaN of none."""
     ordered = sorted(values)
     return ordered[len(ordered) // 2] if ordered else float("nan")

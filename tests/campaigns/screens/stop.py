@@ -13,16 +13,16 @@ from tests.campaigns.screens.terminal import Terminal, start_mine
 ASKED_S = 0.05
 RUNS, QUICK = 8, 2
 A_RUN = 4
-"""Presses in one run: the first stops it, the others come while it stops, or just after."""
+"""Presses in one run: the first stops it, the others follow while it stops, or just after."""
 IN_RUNS = 0.25
-"""At least this share of the presses, the first of each run, comes while it is under way: the scan comes first."""
+"""At least this share of the presses, the first of each run, comes during the run: the scan has priority."""
 SETTLE_S = 0.25
-"""A screen that was just chosen has been drawn by then, s."""
+"""Time to draw a newly selected screen, s."""
 SCREENS = ("F3", "F2", "F5", "F4", "F6")
 
 
 async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
-    """Press STOP on every screen during runs; an observer hears from the service that it was taken."""
+    """Press STOP on every screen during runs; an observer receives the service's event of it."""
     runs = QUICK if quick else RUNS
     wanted = runs * A_RUN
     taken_s: list[float] = []

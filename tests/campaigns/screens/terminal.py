@@ -1,4 +1,4 @@
-"""A real terminal of some size with `tester` in it: its keys go in as bytes, and what it draws is read, or is not."""
+"""A real terminal of some size with `tester` in it: its keys go in as bytes, and its output is read, or not."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ KEYS = {
 """What an xterm sends."""
 _ESCAPE = re.compile(rb"\x1b\[[0-?]*[ -/]*[@-~]|\x1b\][^\x07\x1b]*(?:\x07|\x1b\\)|\x1b[PX^_].*?\x1b\\|\x1b.", re.DOTALL)
 BETWEEN_S = 0.15
-"""Between two keys of a person who knows them, s."""
+"""Time between two keys of a practised operator, s."""
 READ_AT_ONCE = 65_536
 
 
 class Terminal:
-    """A pseudo-terminal of ``size`` columns and rows. What nobody reads stays in it until it is full."""
+    """A pseudo-terminal of ``size`` columns and rows. Unread output stays in it until it is full."""
 
     def __init__(self, seat: Seat, words: Sequence[str], size: tuple[int, int] = (120, 40)) -> None:
-        """Start `tester WORDS` in it; it is read from the start."""
+        """Start `tester WORDS` in it, and read from the start."""
         self._end, child = os.openpty()
         fcntl.ioctl(child, termios.TIOCSWINSZ, struct.pack("HHHH", size[1], size[0], 0, 0))
         self.began_s = clock.monotonic()
@@ -52,7 +52,7 @@ class Terminal:
         self.reading(on=True)
 
     def reading(self, *, on: bool) -> None:
-        """Read what is drawn from now on, or let it stand."""
+        """Start reading its output, or stop."""
         if on:
             self._loop.add_reader(self._end, self._read)
         else:
@@ -69,15 +69,15 @@ class Terminal:
 
     @property
     def text(self) -> str:
-        """Return everything drawn since ``forget``, in the order of drawing, without colours and places."""
+        """Return everything drawn since ``forget``, in drawing order, without colours and positions."""
         return strip(bytes(self._drawn))
 
     def forget(self) -> None:
-        """Look only at what is drawn from now on."""
+        """Forget everything drawn so far."""
         self._drawn.clear()
 
     async def until(self, text: str, within_s: float = 30.0) -> float:
-        """Wait until a text has been drawn and return the moment; raises NotSeenError."""
+        """Wait until a text is drawn and return the time; raises NotSeenError."""
         end_s = clock.monotonic() + within_s
         while text not in self.text:
             if clock.monotonic() > end_s:
@@ -86,7 +86,7 @@ class Terminal:
         return clock.monotonic()
 
     def key(self, name: str) -> float:
-        """Press a key and return the moment."""
+        """Press a key and return the time."""
         pressed_s = clock.monotonic()
         os.write(self._end, KEYS[name])
         return pressed_s
@@ -98,7 +98,7 @@ class Terminal:
             await asyncio.sleep(BETWEEN_S)
 
     def close(self) -> None:
-        """Kill what is in it (SIGKILL), and throw it away."""
+        """Kill its program (SIGKILL), and close it."""
         self.process.kill()
         self.process.wait()
         self.reading(on=False)
@@ -106,12 +106,12 @@ class Terminal:
 
 
 def strip(drawn: bytes) -> str:
-    """Return what was drawn as text, without escape sequences (ECMA-48)."""
+    """Return the output as text, without escape sequences (ECMA-48)."""
     return _ESCAPE.sub(b"", drawn).decode(errors="replace")
 
 
 async def start_mine(screen: Terminal) -> None:
-    """Start recipes/mine.yaml with every question answered by itself: the first of the list, which has been checked."""
+    """Start recipes/mine.yaml with automatic answers: the first of the list, already checked."""
     await screen.press("F2", "Home", "Enter")
     await screen.until("Start a run")
     await screen.press("Shift+Tab", "Space", "Tab")

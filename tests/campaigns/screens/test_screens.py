@@ -1,4 +1,4 @@
-"""The checks of the operator's screen as a campaign, in their short form; what they read off is tested always."""
+"""The checks of the operator's screen as a campaign, in their short form; their readers are always tested."""
 
 from __future__ import annotations
 

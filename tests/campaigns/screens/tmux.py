@@ -20,12 +20,12 @@ LARGE, SMALL = (120, 40), (80, 24)
 BETWEEN_S = 0.3
 """A person's pace, s."""
 SETTLE_S = 0.7
-"""A screen of another size is drawn by then, s."""
+"""Time to draw a screen of another size, s."""
 LOOK_S = 0.1
 
 
 def available() -> bool:
-    """Tell whether there is a tmux."""
+    """Return whether tmux is installed."""
     return shutil.which("tmux") is not None
 
 
@@ -65,7 +65,7 @@ class Tmux:
         return self._do("capture-pane", "-p")
 
     async def see(self, text: str, within_s: float = 30.0) -> float:
-        """Wait until a text stands on the screen; return how long that took, s; raises NotSeenError."""
+        """Wait until a text is on the screen; return the duration, s; raises NotSeenError."""
         began_s = clock.monotonic()
         while text not in (seen := self.screen):
             if clock.monotonic() > began_s + within_s:
@@ -86,7 +86,7 @@ class Tmux:
         await asyncio.sleep(SETTLE_S)
 
     def close(self) -> None:
-        """End the server and what is in it."""
+        """End the server and its programs."""
         subprocess.run(["tmux", "-S", self._socket, "kill-server"], check=False, capture_output=True)
 
 
@@ -95,6 +95,6 @@ def draw(seen: str, file: Path, size: tuple[int, int], title: str) -> None:
     file.with_suffix(".ansi").write_text(seen, encoding="utf-8")
     console = Console(width=size[0], height=size[1], record=True, file=StringIO(), force_terminal=True,
                       color_system="truecolor", legacy_windows=False)  # fmt: skip
-    for line in Text.from_ansi(seen.rstrip("\n")).split("\n"):  # whole: a colour may go on into the next line
+    for line in Text.from_ansi(seen.rstrip("\n")).split("\n"):  # whole: a colour may continue on the next line
         console.print(line, no_wrap=True, overflow="crop", crop=True)
     console.save_svg(str(file.with_suffix(".svg")), title=title)

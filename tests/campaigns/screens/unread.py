@@ -1,4 +1,4 @@
-"""A terminal that nobody reads: what it does to the scan."""
+"""An unread terminal: its effect on the scan."""
 
 from __future__ import annotations
 
@@ -14,13 +14,13 @@ from tests.realtime.processes import SimProcess
 WATCHED_S, QUICK_S = 20.0, 6.0
 LATER_S = 0.02
 STOP_S = 0.5
-"""Of a screen that stands still, s [A]: the 50 ms are asked of one that is read."""
+"""Limit for a screen that is stuck, s [A]: the 50 ms apply to one that is read."""
 EVERY_S = 0.2
 
 
 async def latest_s(observer: Observer, seconds: float) -> float:
-    """Return by how much the latest scan of a time was late, s; ``late_s`` covers the last second and more."""
-    await asyncio.sleep(2.0)  # what was before is forgotten
+    """Return the greatest lateness of a scan during a time, s; ``late_s`` covers the last second and more."""
+    await asyncio.sleep(2.0)  # forgets the time before
     found = 0.0
     end_s = clock.monotonic() + seconds
     while clock.monotonic() < end_s:

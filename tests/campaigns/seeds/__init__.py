@@ -1,1 +1,1 @@
-"""What the main job gives over many seeds, not over one that suits: complete tables, an honest estimate."""
+"""Results of the main job over many seeds, not over a single lucky one: complete tables, an honest estimate."""

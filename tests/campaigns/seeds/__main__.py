@@ -32,7 +32,7 @@ def options(arguments: list[str] | None) -> argparse.Namespace:
 
 
 def measure(topics: list[Topic], sweeps: Sweeps) -> int:
-    """Print every figure and return how many miss; what keeps one from being measured is a miss, too."""
+    """Print every figure and return the number of misses; a failed measurement is also a miss."""
     missed = 0
     for topic in topics:
         print(f"== {topic.name}: {topic.title}", flush=True)
@@ -47,7 +47,7 @@ def measure(topics: list[Topic], sweeps: Sweeps) -> int:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure the named topics; 1 where a figure misses."""
+    """Measure the named topics; return 1 if a figure misses."""
     read = options(arguments)
     if read.list:
         print("\n".join(f"{topic.name:12} {topic.title}" for topic in TOPICS.values()))

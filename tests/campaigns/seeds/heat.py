@@ -1,7 +1,7 @@
-"""Rigs whose heat is unlike what their file believes, over successive runs: a history must not trip for nothing.
+"""Rigs whose heat differs from their file's beliefs, over successive runs: a history must not cause false trips.
 
-What a run records of its heatings is handed to the next one on the same rig, as the store does it. Air that is colder
-or warmer than believed is a matter of real rigs: a simulated one knows its air, so twin and belief are two rigs here.
+A run's record of its heatings is handed to the next run on the same rig, as the store does. Only real rigs can have air
+colder or warmer than believed: a simulated one knows its air, so twin and belief are two rigs here.
 """
 
 from __future__ import annotations
@@ -56,16 +56,16 @@ UNLIKE: Final = {
         "sim.thermal.hub_to_shaft=0.1725 W/K", "sim.belt_conductance=0.069 W/K",
     ),
 }  # fmt: skip
-"""What the twin's heat is (``sim``) where it is not what the file believes, or what else that believes (``observer``).
-Air that is 8 K off trips "surface off model" before anything is heated. Losses of +20 % at 85 degC trip "hub hotter
-than shown": a hub sensor and a thermometer that both read low look the same."""
+"""Differences of the twin's heat (``sim``) from the file's belief, or other beliefs (``observer``). An air error of 8 K
+trips "surface off model" before anything is heated. Losses of +20 % at 85 degC trip "hub hotter than shown": they look
+like a hub sensor and a thermometer that both read low."""
 
 SAMPLED: Final = ("as believed", "hub capacity -25 %", "heater power -20 %", "losses +15 %")
 """Lives of a sample. Each of the others learns a ratio that is near that of one of these."""
 
 
 class Heard(NullRecorder):
-    """Keeps what a run says of its heat and its trips."""
+    """Stores a run's heat data and trips."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -73,21 +73,21 @@ class Heard(NullRecorder):
         self.trips: list[str] = []
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
-        """Keep the data of a heating."""
+        """Store the data of a heating."""
         if kind == KIND and data:
             self.heatings.append(data)
 
     def trip(
         self, t_s: float, interlock: str, text: str, value: float = 0.0, limit: float = 0.0, unit: str = ""
     ) -> int:
-        """Keep the row and what it compared."""
+        """Store the row and the values it compared."""
         self.trips.append(f"{interlock} at {t_s:.0f} s ({value:.3g}, limit {limit:.3g} {unit})")
         return len(self.trips)
 
 
 @dataclass(frozen=True, slots=True)
 class Life:
-    """Successive runs of one rig: its trips, each with its run, and what was known at the last."""
+    """Successive runs of one rig: its trips, each with its run, and the knowledge at the last."""
 
     name: str
     seed: int
@@ -97,7 +97,7 @@ class Life:
 
 
 def live(name: str, seed: int) -> Life:
-    """Run the hot recipe, the quickstart, and the hot recipe again, on a rig that is unlike its file."""
+    """Run the hot recipe, the quickstart, and the hot recipe again, on a rig that differs from its file."""
     rig = load_rig("sim", [one for one in UNLIKE[name] if one.startswith("observer.")])
     twin = load_rig("sim", UNLIKE[name])
     known, ratios, trips = NO_HISTORY, list[float](), list[str]()
@@ -117,7 +117,7 @@ def live(name: str, seed: int) -> Life:
 
 
 def figures(sweeps: Sweeps) -> Iterator[Figure]:
-    """Yield what every life knew in its last run, and how many trips there were."""
+    """Yield the knowledge of every life in its last run, and the number of trips."""
     cases = [(name, seed) for seed in range(5) for name in UNLIKE] if sweeps.full else [(name, 0) for name in SAMPLED]
     names, numbers = zip(*cases, strict=True)
     trips = 0

@@ -1,4 +1,4 @@
-"""The recipes that the figures are about, beside those that ship."""
+"""The recipes of the figures, besides the packaged ones."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
-"""What real rubber does beside what the simulated rig does by default, as values of the rig file.
+"""Effects of real rubber beyond the simulated rig's defaults, as values of the rig file.
 
 The scales are those of ``sim/rig.yaml``: load lost at held depth (3 % in a decade of time), stiffness lost with
-temperature (0.4 %/K), growth with temperature, and wear. A campaign that says "real rubber" means these.
+temperature (0.4 %/K), growth with temperature, and wear. In campaigns "real rubber" means these.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """Planned and actual seconds of every step, and where the time of a condition goes.
 
-`python -m tests.campaigns.seeds.steps RUN ...` reads run folders of one recipe (several seeds). The constants of the
-estimate (tester/kinds/wheel_on_belt/recipe/constants.py) are calibrated against what it prints.
+`python -m tests.campaigns.seeds.steps RUN ...` reads run folders of one recipe (several seeds). Its output calibrates
+the constants of the estimate (tester/kinds/wheel_on_belt/recipe/constants.py).
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.tester.inputs.recipe.texts import load_recipe
 
 @dataclass(frozen=True, slots=True)
 class Took:
-    """One step of a run: seconds in all; of a condition, soaking, sliding, and what lies between pulses."""
+    """One step of a run: total seconds; for a condition, soaking, sliding, and the time between pulses."""
 
     title: str
     seconds: float
@@ -38,7 +38,7 @@ class Took:
 
 
 def took(run: Path) -> list[Took]:
-    """Return the steps of a stored run in order. Raises sqlite3.Error where the record cannot be read."""
+    """Return the steps of a stored run in order. Raises sqlite3.Error if the record cannot be read."""
     with closing(sqlite3.connect(f"{(run / 'run.db').resolve().as_uri()}?mode=ro", uri=True)) as store:
         begun = list(store.execute("SELECT t_s, text FROM event WHERE kind = 'step' ORDER BY sequence"))
         ended = "SELECT t_s FROM event WHERE kind = 'mode' AND text LIKE 'run -> %' ORDER BY t_s"
@@ -48,7 +48,7 @@ def took(run: Path) -> list[Took]:
     marks = [t_s for t_s, _ in begun] + ends[-1:]
     found: list[Took] = []
     for (began_s, title), until_s in zip(begun, marks[1:], strict=False):
-        # A part's cool-down comes after its last step, before the next part's first.
+        # A part's cool-down is between its last step and the next part's first.
         end_s = min([until_s, *(end for end in ends if end > began_s)])
         mine = [(key, at_s) for key, at_s in repeats if began_s <= at_s < end_s]
         soak_s = mine[0][1] - began_s if mine else 0.0
@@ -67,7 +67,7 @@ def carried_out(plan: Plan) -> list[int]:
 
 
 def table(runs: list[Path]) -> list[str]:
-    """Return a line a step: planned, median and range of the runs, then what a condition's median run did."""
+    """Return one line per step: planned, median and range of the runs, then the times of a condition's median run."""
     rig = load_rig(str(runs[0] / "rig.yaml"), [])
     plan = expand(load_recipe(runs[0] / "recipe.yaml", PART).recipe, rig)
     figures = PART.estimate(plan, rig)

@@ -1,4 +1,4 @@
-"""Runs `tester sweep` and `tester plan` as a user does, each sweep once, and reads what they leave."""
+"""Runs `tester sweep` and `tester plan` as a user does, each sweep once, and reads the results."""
 
 from __future__ import annotations
 
@@ -14,12 +14,12 @@ from tests.campaigns.acceptance.bench import COMMAND, ROOT
 
 
 class SweepError(Exception):
-    """A command did not do what a figure builds on."""
+    """A command failed that a figure depends on."""
 
 
 @dataclass(frozen=True, slots=True)
 class SweepSpec:
-    """One sweep; equal specifications are run once. ``overrides`` as for ``--set``."""
+    """One sweep; equal specifications run once. ``overrides`` as for ``--set``."""
 
     recipe: str
     """A shipped recipe's name, or the text of a recipe."""
@@ -31,7 +31,7 @@ class SweepSpec:
 
 @dataclass(frozen=True, slots=True)
 class Swept:
-    """What a sweep left: its exit code, and the rows of its tables as text."""
+    """A sweep's results: its exit code, and the rows of its tables as text."""
 
     code: int
     runs: list[dict[str, str]]
@@ -51,13 +51,13 @@ class Sweeps:
         self._count = 0
 
     def sweep(self, spec: SweepSpec) -> Swept:
-        """Return a sweep's results, run now if it was not. Raises SweepError where it leaves no tables."""
+        """Return a sweep's results; run it if necessary. Raises SweepError if it leaves no tables."""
         if spec not in self._swept:
             self._swept[spec] = self._run(spec)
         return self._swept[spec]
 
     def plan(self, spec: SweepSpec) -> dict[str, object]:
-        """Return what `tester plan --json` says of a sweep's recipe. Raises SweepError."""
+        """Return the output of `tester plan --json` for a sweep's recipe. Raises SweepError."""
         code, said = self._tester("plan", self._named(spec.recipe), "--json", *_set(spec))
         if code:
             raise SweepError(f"tester plan: exit {code}: {said[-400:]}")
@@ -74,7 +74,7 @@ class Sweeps:
         return Swept(code, _rows(folder / "runs.csv"), _rows(folder / "conditions.csv"))
 
     def _named(self, recipe: str) -> str:
-        """Return what a command line calls a recipe; a text becomes a file."""
+        """Return a recipe's name on a command line; a text becomes a file."""
         if "\n" not in recipe:
             return recipe
         path = self._place("recipe").with_suffix(".yaml")
@@ -86,7 +86,7 @@ class Sweeps:
         return self.folder / f"{self._count:03d}-{name}"
 
     def _tester(self, *arguments: str) -> tuple[int, str]:
-        """Run one command line to its end; return its exit code and what it wrote on standard output."""
+        """Run one command line to its end; return its exit code and standard output."""
         environment = {key: value for key, value in os.environ.items() if key != "PYTHONPATH"}
         start = [self.command] if self.command else [sys.executable, "-c", COMMAND]
         if not self.command:

@@ -1,4 +1,4 @@
-"""The figures over many seeds judge what they are handed: each can miss."""
+"""The figures over many seeds judge their input: each can miss."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ROW = {"compound": "1#", "load_n": "100", "slip_velocity_mm_s": "300", "sideslip
 
 
 class Played(Sweeps):
-    """Sweeps whose results the test plays: what is odd about the first run and about some rows."""
+    """Sweeps with prepared results: some oddity of the first run and of some rows."""
 
     def __init__(
         self, rows: int, odd_run: dict[str, str] | None = None, odd_rows: dict[int, dict[str, str]] | None = None,

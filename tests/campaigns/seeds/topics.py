@@ -1,4 +1,4 @@
-"""The figures: what is run, what is asked, how many seeds the short and the long form take."""
+"""The figures: their runs, their limits, and the number of seeds of the short and the long form."""
 
 from __future__ import annotations
 
@@ -12,11 +12,11 @@ from tests.campaigns.seeds.rubber import REAL_RUBBER, WEAR_RATES, worn_at
 from tests.campaigns.seeds.sweeps import Sweeps, SweepSpec, Swept
 
 BELIEFS = ("wear.rate=0.24", "observer.friction_heat_fraction=0.078", "sim.wheel.outer_diameter=89.5")
-"""What the rig file believes, off the twin's truth: wear three times as fast, 30 % more friction heat, and a wheel that
-is half a millimetre smaller than believed."""
+"""The rig file's wrong beliefs about the twin: wear three times as fast, 30 % more friction heat, and a wheel that is
+half a millimetre smaller than believed."""
 
 STABILITY_WORDS = ("drift", "stabil", "transient", "fluctuat")
-"""Words in a reason that say that the coefficient did not stand still."""
+"""Words in a reason that mean that the coefficient was not steady."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -29,7 +29,7 @@ class Topic:
 
 
 def _complete(name: str, swept: Swept, seeds: int, rows: int) -> Iterator[Figure]:
-    """Yield whether every seed ends with exit code 0 and every row, and which do not."""
+    """Yield whether every seed ends with exit code 0 and every row, and the exceptions."""
     wanted = {"exit_code": "0", "missing_rows": "0", "rows": str(rows)}
     good = [run for run in swept.runs if wanted.items() <= run.items()]
     bad = sorted(int(run["seed"]) for run in swept.runs if run not in good)
@@ -94,7 +94,7 @@ def _table2_specs(full: bool) -> list[SweepSpec]:
 
 
 def _rubber(sweeps: Sweeps) -> Iterator[Figure]:
-    """Yield, for every wear rate, how many seeds came to their end: an interlock that trips here trips for nothing."""
+    """Yield, for every wear rate, how many seeds finished: any trip here is a false one."""
     seeds = 10 if sweeps.full else 1
     for rate in WEAR_RATES:
         runs = sweeps.sweep(SweepSpec(recipes.RUBBER, seeds, worn_at(rate))).runs
@@ -103,7 +103,7 @@ def _rubber(sweeps: Sweeps) -> Iterator[Figure]:
 
 
 SEEDS_OF_A_MEDIAN = 20
-"""Fewer seeds than this do not settle the median of the rig time."""
+"""Minimum number of seeds for the median of the rig time."""
 
 ESTIMATED = {
     "quickstart": "quickstart",
@@ -127,7 +127,7 @@ def _estimate(sweeps: Sweeps) -> Iterator[Figure]:
         within, total = within + inside, total + seeds
         off = 100.0 * (middle / told - 1.0)
         words = f"{middle:.0f} s against {told:.0f} s ({low:.0f} to {high:.0f}): {off:+.1f} %"
-        # The thermometer's bias of a session moves a run by a third: the median of a few seeds says nothing.
+        # The thermometer's bias of a session moves a run by a third: the median of a few seeds means nothing.
         judged = seeds >= SEEDS_OF_A_MEDIAN
         limit = "within 5 %" if judged else "not judged: too few seeds"
         yield holds(f"estimate, {name}: median of {len(took)} seeds", not judged or abs(off) <= 5.0, words, limit)

@@ -1,1 +1,1 @@
-"""One setting that a recipe measures several times: does the run say rightly whether it has changed?"""
+"""One setting that a recipe measures several times: does the run report correctly whether it has changed?"""

@@ -1,8 +1,8 @@
 """`python -m tests.campaigns.settings [--sample] [--seeds N] [--jobs N]`: one setting, four times over two wheels.
 
-Counts how often U of a difference holds it, on one wheel and between wheels, one pair a seed; how often a run says
-that a setting disagrees where nothing has changed; and where friction has changed by 8 % between two measurements on
-one wheel. Wear, diameter and heat are not what is believed of them. Prints a line a figure; exit status 1 where one
+Counts how often U of a difference contains it, on one wheel and between wheels, one pair a seed; how often a run
+reports that a setting disagrees, with no change and with a change of friction by 8 % between two measurements on one
+wheel. Wear, diameter and heat differ from the beliefs about them. Prints a line a figure; exit status 1 where one
 misses.
 """
 
@@ -19,17 +19,17 @@ from tests.campaigns.settings.twin import SettingCase, SettingFound, found_of
 
 SEEDS, SAMPLE_SEEDS = 300, 2
 COVERED = (91.0, 98.0)
-"""Share of differences that U holds, per cent."""
+"""Share of differences within U, per cent."""
 SAID = 0.95
-"""Share of runs in which a change is to be reported."""
+"""Required share of runs that report a change."""
 WHOLE = 0.95
 """Share of runs in which all four measurements have a value."""
 SURE = 0.99
-"""Chance with which false alarms at the stated level are no more than are allowed."""
+"""Probability that false alarms at the stated level do not exceed the allowed number."""
 
 
 def alarms_allowed(count: int) -> int:
-    """Return how many false alarms of so many runs the level allows."""
+    """Return the number of false alarms that the level allows in so many runs."""
     allowed, total = 0, (1.0 - LEVEL) ** count
     while total < SURE:
         allowed += 1
@@ -38,7 +38,8 @@ def alarms_allowed(count: int) -> int:
 
 
 def covered(name: str, pairs: list[tuple[float, float]]) -> Figure:
-    """Return how many differences, which are truly 0, their U holds; few pairs get the room of their count."""
+    """Return how many differences, which are truly 0, are within U; the limits of few pairs allow for the scatter of
+    the count."""
     count = len(pairs)
     low, high = COVERED
     room = 0.0 if count >= WHOLE * SEEDS else 250.0 * sqrt(0.25 / max(count, 1))
@@ -49,7 +50,7 @@ def covered(name: str, pairs: list[tuple[float, float]]) -> Figure:
 
 
 def figures(found: list[SettingFound]) -> Iterator[Figure]:
-    """Yield what became of all runs."""
+    """Yield the results of all runs."""
     for changed in (False, True):
         ours = [one for one in found if one.case.changed is changed]
         whole = [one for one in ours if one.whole]
@@ -68,7 +69,7 @@ def figures(found: list[SettingFound]) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser(
         "python -m tests.campaigns.settings", description=(__doc__ or "").partition("\n")[2]
     )

@@ -1,10 +1,9 @@
-"""Runs on the simulated rig that measure one setting four times, on two wheels, with beliefs that are wrong.
+"""Runs on the simulated rig that measure one setting four times, on two wheels, with wrong beliefs.
 
-Of each seed the believed wear is off by what its range allows (0.02 to 0.3 mm3/(N m) where 0.08 is believed, evenly in
-its logarithm), the diameter by up to the 0.15 mm of its term, heat and belt by up to 30 %. True of two measurements on
-one wheel is that they do not differ, nor do those of two wheels but for the wheels themselves. In a changed run
-friction steps by 8 %, up or down by turns, as the second measurement on the first wheel begins, and is back for the
-second wheel.
+In each seed the believed wear has an error within its range (0.02 to 0.3 mm3/(N m) where 0.08 is believed, evenly in
+its logarithm), the diameter of up to the 0.15 mm of its term, heat and belt of up to 30 %. Two measurements on one
+wheel truly do not differ; those of two wheels differ only by the wheels themselves. In a changed run friction steps by
+8 %, up or down by turns, as the second measurement on the first wheel begins, and is back for the second wheel.
 """
 
 from __future__ import annotations
@@ -30,7 +29,7 @@ BELIEVED_WEAR, WEAR = 0.08, (0.02, 0.3)
 """The packaged rig's belief of the wear rate, and its range, mm3/(N m)."""
 DIAMETER_MM, NEW_MM = 0.15, 90.0
 OFF = 0.3
-"""By how much heat and belt are off at most, as a share."""
+"""Maximum error of heat and belt, as a share."""
 RECIPE = """recipe: one setting, four times
 specimens: [{compound: "1#"}]
 replicates: 2
@@ -48,7 +47,7 @@ grids:
 
 @dataclass(frozen=True, slots=True)
 class SettingCase:
-    """A run to be made; ``changed``: friction steps in it."""
+    """A run to make; ``changed``: friction steps in it."""
 
     seed: int
     changed: bool
@@ -56,13 +55,13 @@ class SettingCase:
 
 @dataclass(frozen=True, slots=True)
 class SettingFound:
-    """What a run says of its setting; differences in per cent with U, on the first wheel and between wheels."""
+    """A run's result for its setting; differences in per cent with U, on the first wheel and between wheels."""
 
     case: SettingCase
     measurements: int
     disagrees: bool
     stands_out: int
-    """Number of the condition that stands out most, 0 where none does."""
+    """Number of the condition that stands out most, 0 if none."""
     chi2: float
     limit: float
     on_one: tuple[float, float]
@@ -75,7 +74,7 @@ class SettingFound:
 
 
 def beliefs(seed: int) -> tuple[str, ...]:
-    """Return by what the simulated rig of a seed differs from what is believed of it, as overrides."""
+    """Return the differences between a seed's simulated rig and the beliefs about it, as overrides."""
     random = Random(f"one setting {seed}")
     wear = exp(random.uniform(*map(log, WEAR))) / BELIEVED_WEAR
     heat, belt = (random.uniform(1.0 - OFF, 1.0 + OFF) for _ in range(2))
@@ -88,7 +87,7 @@ def beliefs(seed: int) -> tuple[str, ...]:
 
 
 def faults(case: SettingCase) -> tuple[str, ...]:
-    """Return what is amiss in a run: a wheel of another diameter, and friction that steps."""
+    """Return a run's faults: a wheel of another diameter, and stepping friction."""
     off_mm = Random(f"diameter {case.seed}").uniform(-DIAMETER_MM, DIAMETER_MM)
     found = [f"t=0 s: wheel diameter {100.0 * (1.0 + off_mm / NEW_MM):.4f} %"]
     if case.changed:
@@ -98,7 +97,7 @@ def faults(case: SettingCase) -> tuple[str, ...]:
 
 
 def found_of(cases: Sequence[SettingCase], jobs: int) -> Iterator[SettingFound]:
-    """Yield what each run says."""
+    """Yield each run's result."""
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         yield from pool.map(carry_out, cases)
 

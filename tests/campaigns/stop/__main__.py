@@ -1,8 +1,8 @@
 """`python -m tests.campaigns.stop [--sample] [--tries N]`: STOP among hostile clients.
 
-Twenty clients that send each command in a loop or never read, two that take control by force, 32 that are connected
-and silent and 600 that come and go at both doors, all at low priority. Prints a line a figure with its limit, and exits
-1 where one misses.
+Twenty clients that send each command in a loop or never read, two that take control by force, 32 that connect and stay
+silent and 600 that come and go at both doors, all at low priority. Prints a line a figure with its limit, and exits 1
+where one misses.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from tests.campaigns.stop.place import NotReachedError, Place
 TRIES, SAMPLE = 50, 8
 """In each scene."""
 PLANNED, MANY = 20_000, 200_000
-"""Conditions of the recipe that is planned; of the larger one, which is planned for a tenth of the tries."""
+"""Conditions of the planned recipe; of the larger one, planned for a tenth of the tries."""
 
 
 def options(arguments: list[str] | None) -> argparse.Namespace:
@@ -35,7 +35,7 @@ def options(arguments: list[str] | None) -> argparse.Namespace:
 
 
 async def figures(folder: Path, tries: int, *, many: bool) -> AsyncIterator[Figure]:
-    """Yield every figure; ``many``: of the larger recipe too."""
+    """Yield every figure; ``many``: also those of the larger recipe."""
     with ExitStack() as stack:
         place = Place(folder, stack)
         async with await place.operator() as client:
@@ -54,7 +54,7 @@ async def figures(folder: Path, tries: int, *, many: bool) -> AsyncIterator[Figu
 
 
 async def measure(tries: int, *, many: bool) -> int:
-    """Print the figures; return how many miss."""
+    """Print the figures; return the number of misses."""
     missed = 0
     with TemporaryDirectory(prefix="stop-", ignore_cleanup_errors=True) as folder:
         try:
@@ -68,7 +68,7 @@ async def measure(tries: int, *, many: bool) -> int:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure; 1 where a figure misses."""
+    """Measure; return 1 if a figure misses."""
     read = options(arguments)
     if not HAS_UNIX:
         print("not measured: no Unix sockets on this system")

@@ -1,4 +1,4 @@
-"""`python -m tests.campaigns.stop.hostile KIND FOLDER`: clients that want to keep STOP from the rig, until killed.
+"""`python -m tests.campaigns.stop.hostile KIND FOLDER`: clients that try to keep STOP from the rig, until killed.
 
 KIND: ``talkers`` (each command in a loop, a client each), ``takers`` (two that tear control away from each other and
 from the operator), ``mutes`` (join, command, and never read), ``strangers`` (idle connections that never join,
@@ -57,15 +57,15 @@ COMMANDS: tuple[Callable[[int], Action], ...] = (
 )
 """One client each."""
 MUTES = 3
-"""With those that talk: twenty."""
+"""Together with the talkers: twenty."""
 TAKERS = 2
-"""Besides, where the scene bears it: taking control by force is any client's right, and ends manual mode."""
+"""In addition, in scenes that allow it: any client may take control by force, which ends manual mode."""
 KINDS = ("talkers", "mutes", "strangers", "callers")
 BY_FORCE = (*KINDS, "takers")
 
 
 async def for_ever(work: Callable[[], Awaitable[None]]) -> None:
-    """Do something again and again, whatever becomes of it."""
+    """Do something repeatedly, ignoring failures."""
     while True:
         with suppress(OSError, LostError, NoServiceError, TimeoutError):
             await work()
@@ -106,7 +106,7 @@ async def keep_mute(address: UnixAddress) -> None:
 
 
 async def idle(path: str) -> None:
-    """Connect, and say nothing until the other side hangs up."""
+    """Connect, and send nothing until the other side disconnects."""
     reader, writer = await asyncio.open_unix_connection(path)
     with suppress(OSError):
         await reader.read()
@@ -114,14 +114,14 @@ async def idle(path: str) -> None:
 
 
 async def come_and_go(path: str) -> None:
-    """Connect, say half a sentence, and leave."""
+    """Connect, send half a message, and disconnect."""
     _, writer = await asyncio.open_unix_connection(path)
     writer.write(b"GET / HTTP/1.1\r\nHost: x\r\n")
     writer.close()
 
 
 async def call(path: str) -> None:
-    """Say STOP at its door in a loop."""
+    """Send STOP at its door in a loop."""
     reader, writer = await asyncio.open_unix_connection(path)
     while True:
         writer.write(b"stop hostile\n")
@@ -130,7 +130,7 @@ async def call(path: str) -> None:
 
 
 async def main(kind: str, folder: Path) -> None:
-    """Be that kind of client until killed."""
+    """Run that kind of client until killed."""
     address = UnixAddress(folder / "service.sock")
     where = str(stop_path(address.path) if kind == "callers" else address.path)
     works: list[Callable[[], Awaitable[None]]] = []

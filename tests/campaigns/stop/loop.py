@@ -1,6 +1,6 @@
 """`python -m tests.campaigns.stop.loop FILE PHASE`: a bare loop of 20 ms. Writes when it woke, how late.
 
-It wakes at PHASE (s) behind whole multiples of its period: several loops share none of their moments.
+It wakes at PHASE (s) after whole multiples of its period, so that several loops never wake together.
 """
 
 from __future__ import annotations

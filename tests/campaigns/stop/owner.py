@@ -1,8 +1,8 @@
-"""`python -m tests.campaigns.stop.owner FOLDER`: `tester serve` on the simulated rig, notes when STOP is in control.
+"""`python -m tests.campaigns.stop.owner FOLDER`: `tester serve` on the simulated rig; records when STOP is in control.
 
-STOP of the operator is carried out, and so is every one that came before a run ticks. Everybody else's is taken to
-where the run would be told, noted and left there, so that one run bears two hundred of them. Each scan is noted too,
-with the time for which it was meant.
+The operator's STOP is carried out, as is any that comes before a run ticks. Any other STOP is followed to the point
+where the run would receive it, recorded and dropped there, so that one run survives two hundred of them. Each scan is
+also recorded, with its due time.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ STOPS, SCANS = "stops.txt", "scans.bin"
 
 
 class Noted:
-    """A run whose scans are noted: when each one began by the clock, and for when it was meant (rig time), s."""
+    """A run whose scans are recorded: clock time of each beginning, and its due time (rig time), s."""
 
     def __init__(self, run: Ticked, notes: array[float]) -> None:
         self.run, self.notes = run, notes
@@ -42,17 +42,17 @@ class Noted:
         return self.run.waiting
 
     def tick(self, now: float) -> float:
-        """Note the scan, and do it."""
+        """Record the scan, and do it."""
         self.notes.append(clock.monotonic())
         self.notes.append(now)
         return self.run.tick(now)
 
 
 def note_stops(file: Path) -> None:
-    """Write who has stopped, and when that was in control (tester.base.clock.monotonic), a line each.
+    """Write the sender of each STOP, and when it was in control (tester.base.clock.monotonic), a line each.
 
     ``kept``: while nothing ticks the lane's thread keeps it, and nothing begins any more. ``done``: it is carried out;
-    one that was kept already stood for those that came after it.
+    one that was already kept also covers those that came after it.
     """
     carry_out, end = Orders.stop, StopLane.end_ticking
     take = StopLane._take  # pyright: ignore[reportPrivateUsage]
@@ -65,7 +65,7 @@ def note_stops(file: Path) -> None:
         stood_for.clear()
         real = [one for one in names if self.desk.watch is None or one in early]
         found = [one for one in names if OPERATOR in one or (PROBE in one and one in real)]
-        if found:  # what is being planned does not begin, or not move
+        if found:  # the planned run does not begin, or does not move
             carry_out(self, found[0], fast)
         else:
             self.desk.tell("command", f"stop by {name}", "warning")
@@ -74,7 +74,7 @@ def note_stops(file: Path) -> None:
     def heard(self: StopLane, line: str) -> None:
         before = len(self._wishes)  # pyright: ignore[reportPrivateUsage]
         name = line.split(" ", 3)[-1]
-        if not self.ticking:  # noted before it is answered: who hears the answer looks for the note
+        if not self.ticking:  # recorded before the answer: the receiver of the answer looks for the record
             early.add(name)
             written.write(f"{clock.monotonic()} kept {name}\n")
         take(self, line)
@@ -91,7 +91,7 @@ def note_stops(file: Path) -> None:
 
 
 def note_scans(file: Path) -> None:
-    """Write the scans of each run behind those before it."""
+    """Append the scans of each run."""
 
     def ticked(engine: Ticked, world: TickedWorld, **options: Any) -> float:
         notes: array[float] = array("d")
@@ -108,7 +108,7 @@ def note_scans(file: Path) -> None:
 def main(folder: Path) -> int:
     """Serve until the process ends.
 
-    The plan of 200,000 conditions counts, not the 245 GB of its record: its runs are stopped before they fill a disk.
+    The plan of 200,000 conditions matters, not the 245 GB of its record: its runs are stopped before they fill a disk.
     """
     preconditions.too_little_room = lambda folder, needed: ""
     note_stops(folder / STOPS)

@@ -1,4 +1,4 @@
-"""A service under attack, the operator who uses it, and what they leave behind in files."""
+"""A service under attack, the operator who uses it, and their files."""
 
 from __future__ import annotations
 
@@ -26,18 +26,18 @@ from tests.campaigns.stop.owner import OPERATOR, PROBE, SCANS, STOPS
 
 LOOK_S = 0.02
 START_S = 180.0
-"""The service is there by then: on a machine that is busy it was seen to take one minute."""
+"""Time limit for the service's start: on a busy machine it once took a minute."""
 ROLLING = 500
-"""Scans over which the difference of both clocks is taken for constant."""
+"""Number of scans over which the difference between both clocks counts as constant."""
 
 
 class NotReachedError(Exception):
-    """What is to be measured does not come about; the message says what, and what was there instead."""
+    """The state to be measured was not reached; the message gives it, and the actual state."""
 
 
 @dataclass(frozen=True, slots=True)
 class Try:
-    """One STOP: when it was sent, when it was in control, when the answer was there (tester.base.clock.monotonic)."""
+    """One STOP: when it was sent, when it was in control, when the answer arrived (tester.base.clock.monotonic)."""
 
     sent_s: float
     control_s: float | None
@@ -45,25 +45,25 @@ class Try:
 
 
 NICE = 10
-"""Of hostile clients."""
+"""Niceness of hostile clients."""
 LOOPS = tuple(f"loop{number}.txt" for number in range(4))
-"""What the bare loops write that come as the owner does.
+"""Output of the bare loops that wake like the owner.
 
-One would be woken half as often as a scan that it is compared with: the worst of few moments says little.
+A single loop would wake half as often as the scans it is compared with: the worst of few moments means little.
 """
 NICED_LOOPS = ("niced.txt",)
-"""What the one writes that comes as the gateway does."""
+"""Output of the loop that wakes like the gateway."""
 
 
 def started(*words: str, nice: int = 0, mute: bool = False) -> subprocess.Popen[bytes]:
-    """Run a module of this package; ``mute``: nobody reads its troubles."""
+    """Run a module of this package; ``mute``: discard its error output."""
     before = ["nice", "-n", str(nice)] if nice else []
     errors = subprocess.DEVNULL if mute else None
     return subprocess.Popen([*before, sys.executable, "-m", *words], stdin=subprocess.DEVNULL, stderr=errors)
 
 
 def ended(process: subprocess.Popen[bytes]) -> None:
-    """End a process, in an orderly way first."""
+    """End a process, at first in an orderly way."""
     process.terminate()
     try:
         process.wait(30.0)
@@ -89,7 +89,7 @@ class Place:
         self._random = Random(7)
 
     async def operator(self) -> Client:
-        """Connect once the service is there, and control. Raises NotReachedError."""
+        """Connect once the service exists, and take control. Raises NotReachedError."""
         end_s = clock.monotonic() + START_S
         while clock.monotonic() < end_s:
             try:
@@ -100,7 +100,7 @@ class Place:
 
     @contextmanager
     def attack(self, kinds: Sequence[str] = KINDS) -> Iterator[None]:
-        """Let the hostile clients loose while the block lasts. Raises NotReachedError where they have ended."""
+        """Run the hostile clients during the block. Raises NotReachedError if they have ended."""
         module, folder = "tests.campaigns.stop.hostile", str(self.folder)
         processes = [started(module, kind, folder, nice=NICE, mute=True) for kind in kinds]
         try:
@@ -125,7 +125,7 @@ class Place:
             await asyncio.sleep(LOOK_S)
 
     async def take_control(self, client: Client) -> None:
-        """Have control, whoever has it."""
+        """Take control from any client."""
         await client.command(TakeControl(force=True))
 
     # -- STOP -------------------------------------------------------------------------------------------------
@@ -149,10 +149,10 @@ class Place:
         return name, sent_s, answered_s
 
     async def tries(self, count: int, kept: bool = False, fresh: bool = False) -> list[Try]:
-        """STOP so many times at random moments, over a connection that stays open as a screen's does.
+        """Send STOP so many times at random moments, over a connection that stays open as a screen's does.
 
-        ``kept``: where nothing ticks it is enough that nothing begins any more. ``fresh``: connect anew each time, as
-        a command or a script does; the time to connect counts.
+        ``kept``: if nothing ticks it is enough that nothing begins any more. ``fresh``: connect anew each time, as a
+        command or a script does; the time to connect counts.
         """
         return self.judged(await self.stops(count, fresh), kept)
 
@@ -169,7 +169,7 @@ class Place:
         return made
 
     def judged(self, made: list[tuple[str, float, float | None]], kept: bool = False) -> list[Try]:
-        """Return the tries with when control had them."""
+        """Return the tries with the times at which control had them."""
         taken: dict[str, float] = {}
         for line in (self.folder / STOPS).read_text(encoding="utf-8").splitlines():
             at, how, names = line.split(" ", 2)
@@ -183,31 +183,31 @@ class Place:
         return any(line.split(" ")[1:3] == ["kept", name] for line in lines)
 
     def end_for_real(self) -> None:
-        """The operator's STOP, which is carried out. Raises NotTakenError."""
+        """Send the operator's STOP, which is carried out. Raises NotTakenError."""
         with StopCall(self.address, OPERATOR) as call:
             call.stop()
 
     def scheduling(self) -> str:
-        """Return how the operating system schedules whoever ticks now."""
+        """Return how the operating system schedules the process that ticks now."""
         if sys.platform != "linux":
             return f"not known on {sys.platform}"
         kind = os.sched_getscheduler(self._owner.pid) & ~os.SCHED_RESET_ON_FORK
         return "real-time priority" if kind == os.SCHED_RR else "an ordinary process: no real-time priority is granted"
 
-    # -- what was noted ---------------------------------------------------------------------------------------
+    # -- records ---------------------------------------------------------------------------------------
 
     def loop_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> float:
-        """Return the worst lateness of the bare loops in a time."""
+        """Return the worst lateness of the bare loops in an interval."""
         return max(self.loops_late_s(from_s, to_s, files), default=0.0)
 
     def loops_late_s(self, from_s: float, to_s: float, files: Sequence[str] = LOOPS) -> list[float]:
-        """Return how late the bare loops were in a time, each time."""
+        """Return every lateness of the bare loops in an interval."""
         lines = [line for file in files for line in (self.folder / file).read_text(encoding="utf-8").splitlines()]
         rows = [line.split() for line in lines]
         return [float(row[1]) for row in rows if len(row) == 2 and from_s <= float(row[0]) <= to_s]
 
     def scans(self) -> list[tuple[float, float]]:
-        """Return every scan of the runs that have ended: when it began by the clock, and how late that was, s."""
+        """Return every scan of the finished runs: clock time of its beginning, and its lateness, s."""
         notes: array[float] = array("d")
         file = self.folder / SCANS
         if not file.exists():
@@ -218,9 +218,9 @@ class Place:
 
 
 def late_scans(scans: Sequence[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Return when scans began and how late that was, s, from when they began by the clock and for when they were meant.
+    """Return when scans began and how late, s, from their clock times and due times.
 
-    Each run has a clock of its own, which begins at 0: no piece of ``ROLLING`` scans has two of them.
+    Each run has a clock of its own, which begins at 0: no piece of ``ROLLING`` scans contains two of them.
     """
     late: list[tuple[float, float]] = []
     first = 0

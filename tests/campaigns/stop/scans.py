@@ -1,4 +1,4 @@
-"""How late scans were without others on the computer and beside them, judged with the error of their sample."""
+"""The lateness of scans with and without other processes, judged with the error of the sample."""
 
 from __future__ import annotations
 
@@ -11,13 +11,13 @@ from tests.campaigns.stop.place import Place
 
 SHARE = 0.99
 BLOCK_S = 0.5
-"""Late scans come in clusters: this much time is drawn as a whole."""
+"""Late scans come in clusters: the bootstrap draws blocks of this length."""
 DRAWS = 400
 INTERVAL = 0.95
 
 
 class Scans:
-    """How late scans were without others and beside them, as long watched, and how late bare loops, s, by time."""
+    """Lateness of scans without and with others, over equal times, and of bare loops, s, by time."""
 
     def __init__(self, place: Place, quiet: tuple[float, float], loud: tuple[float, float]) -> None:
         """``quiet``, ``loud``: from when to when (tester.base.clock.monotonic); the run has ended."""
@@ -28,7 +28,7 @@ class Scans:
         self.loops = place.loops_late_s(*loud)
 
     def figures(self, others: str) -> list[Figure]:
-        """What was seen beside ``others``; the latest scan is judged over all rounds."""
+        """Figures with ``others``; the latest scan is judged over all rounds."""
         return [
             at_least(f"scans beside {others}", len(self.beside), 0.9 * 100.0 * self.seconds),
             self._share_in_time(),
@@ -37,10 +37,11 @@ class Scans:
         ]  # fmt: skip
 
     def _share_in_time(self) -> Figure:
-        """99 % of scans are no later than without them by more than a bare loop is: missed beyond the sample's error.
+        """99 % of scans are not later than without others by more than a bare loop's lateness: a miss exceeds the
+        sample's error.
 
-        Ten seconds have ten scans beyond that share, so a figure that is taken from them alone misses now and then
-        where nothing is late.
+        Ten seconds have ten scans beyond that share, so a figure from them alone sometimes misses although nothing is
+        late.
         """
         least_s = self.least_excess_s()
         return holds(
@@ -53,11 +54,11 @@ class Scans:
         )
 
     def excess_s(self) -> float:
-        """Return how much later scans are beside others than without them and a bare loop together, s."""
+        """Return how much later scans with others are than scans without others plus a bare loop, s."""
         return nth(self.beside, SHARE) - nth(self.before, SHARE) - nth(self.loops, SHARE)
 
     def least_excess_s(self) -> float:
-        """Return the lower limit of ``excess_s``, s, NaN where there is nothing; blocks of time are drawn again."""
+        """Return the lower limit of ``excess_s``, s, by a block bootstrap; NaN without data."""
         drawn = random.Random(0)
         excess = [
             nth(_again(self.beside, self.seconds, drawn), SHARE)
@@ -69,7 +70,7 @@ class Scans:
 
 
 def _again(late: Sequence[float], seconds: float, drawn: random.Random) -> list[float]:
-    """Return as many of them, in blocks that were drawn with replacement."""
+    """Return as many of them, in blocks drawn with replacement."""
     blocks = max(1, round(seconds / BLOCK_S))
     size = max(1, len(late) // blocks)
     starts = range(max(1, len(late) - size + 1))
@@ -77,32 +78,32 @@ def _again(late: Sequence[float], seconds: float, drawn: random.Random) -> list[
 
 
 def latest_kept(rounds: Sequence[Scans]) -> bool:
-    """The latest scan beside others is no later than the latest without them by more than the loops show."""
+    """The latest scan with others is not later than the latest without them by more than the loops show."""
     seen = all(one.before and one.beside and one.loops for one in rounds)
     return seen and worst(one.beside for one in rounds) <= latest_limit_s(rounds)
 
 
 def latest_limit_s(rounds: Sequence[Scans]) -> float:
-    """Return how late a scan may be beside others, of all rounds, s."""
+    """Return the allowed lateness of a scan with others, of all rounds, s."""
     return worst(one.before for one in rounds) + worst(one.loops for one in rounds)
 
 
 def latest_of(rounds: Sequence[Scans]) -> str:
-    """Return the latest scan beside others, in words."""
+    """Return the latest scan with others, as text."""
     loop_s = worst(one.loops for one in rounds)
     return f"{1e3 * worst(one.beside for one in rounds):.1f} ms (bare loop {1e3 * loop_s:.1f})"
 
 
 def limit_of(rounds: Sequence[Scans]) -> str:
-    """Return what it may be, in words."""
+    """Return its limit, as text."""
     return f"at most {1e3 * latest_limit_s(rounds):.1f} ms"
 
 
 def worst(late: Iterable[Sequence[float]]) -> float:
-    """Return the greatest of all, NaN where there are none."""
+    """Return the greatest of all, NaN if there are none."""
     return max((nth(one, 1.0) for one in late), default=float("nan"))
 
 
 def nth(late: Sequence[float], share: float) -> float:
-    """Return what so great a share of the numbers does not exceed, NaN for none."""
+    """Return the quantile of the numbers for a share, NaN for none."""
     return sorted(late)[max(0, ceil(share * len(late)) - 1)] if late else float("nan")

@@ -1,4 +1,4 @@
-"""What the rig is doing while STOP is pressed: sliding at 100 Hz, resting at 10 Hz, moved by hand, not there yet."""
+"""The rig's activity while STOP is pressed: sliding at 100 Hz, resting at 10 Hz, moved by hand, not yet present."""
 
 from __future__ import annotations
 
@@ -22,12 +22,12 @@ from tests.campaigns.stop.scans import Scans, latest_kept, latest_of, limit_of
 
 ASKED_S = 0.1
 QUIET_S = 10.0
-"""Scans are watched for so long without anybody hostile."""
+"""Time over which scans are watched without hostile clients."""
 MOST_ROUNDS = 3
-"""Where the latest scan of the first round misses, all are watched and judged as one, by the same inequality: a virtual
-machine's processor is taken away for 4 to 10 ms at any moment, and 10 s show little of how late that makes."""
+"""If the latest scan of the first round misses, all rounds are watched and judged as one, by the same inequality: a
+virtual machine loses its processor for 4 to 10 ms at any moment, and 10 s show little of the resulting lateness."""
 SETTLE_S = 3.0
-"""Hostile clients have begun by then, s."""
+"""Time for hostile clients to start, s."""
 SLIDES = """\
 recipe: sliding and resting
 specimens: [{compound: "1#"}]
@@ -38,16 +38,16 @@ grids:
   - {name: one, slip_velocity: 100 mm/s, load: 100 N, temperature: 25 degC}
 """
 SIGN_S = 0.25
-"""Between two signs of life, s: as the operator's screen gives them."""
+"""Time between two signs of life, s: as sent by the operator's screen."""
 SHARE_S = SILENT_S - 2.0 * SIGN_S
-"""A loop as nice as the gateway that is later than this: a sign of life may be a second on its way."""
+"""Lateness of a loop with the gateway's niceness above which a sign of life may take a second."""
 ARM_S = 120.0
 MOST_TRIES = 4
-"""As many tries as asked for are made at most, to have those while the rig is moved."""
+"""Maximum number of tries, as a multiple of the requested ones, to get these while the rig is moved."""
 WHY = ("mode", "control", "run", "alarm", "service")
-"""Events that say why manual mode has ended."""
+"""Events that give the reason for the end of manual mode."""
 TAKEN_S = 0.3
-"""An order that is refused for want of control has been by then, s."""
+"""Time within which an order is refused for lack of control, s."""
 ENDED = ("OFFLINE", "INTERRUPTED")
 Attack = Callable[[Sequence[str]], AbstractContextManager[None]]
 
@@ -65,7 +65,7 @@ def big(conditions: int) -> str:
 
 
 def figures_of(place: Place, name: str, tries: list[Try], began_s: float) -> list[Figure]:
-    """Compare the tries of a scene with what is asked of STOP."""
+    """Compare the tries of a scene with the limits of STOP."""
     worst_s = place.loop_late_s(began_s, clock.monotonic())
     delays = [one.control_s - one.sent_s for one in tries if one.control_s is not None]
     answers = [one.answered_s - one.sent_s for one in tries if one.answered_s is not None]
@@ -82,7 +82,7 @@ def figures_of(place: Place, name: str, tries: list[Try], began_s: float) -> lis
 
 
 async def ended_by_the_operator(place: Place, client: Client) -> Figure:
-    """Stop for real, and look that the rig does."""
+    """Really stop, and check that the rig stops."""
     sent_s = clock.monotonic()
     await asyncio.to_thread(place.end_for_real)
     stopping = ("STOPPING", "COOLDOWN", "OFFLINE", "INTERRUPTED")
@@ -93,7 +93,7 @@ async def ended_by_the_operator(place: Place, client: Client) -> Figure:
 
 
 def at_rest(view: StateView) -> bool:
-    """Nothing is under way."""
+    """Nothing is running."""
     return view.mode in ("OFFLINE", "INTERRUPTED", "IDLE")
 
 
@@ -140,9 +140,8 @@ async def sliding_and_resting(place: Place, client: Client, attack: Attack, coun
 
 
 async def begin_to_slide(place: Place, client: Client, loud_s: float) -> tuple[float, float]:
-    """Begin a run that slides; return from when to when it did with nobody hostile there (tester.base.clock.monotonic).
-
-    ``loud_s``: how long it is to slide beside hostile clients.
+    """Begin a run that slides; return from when to when it slid without hostile clients (tester.base.clock.monotonic).
+    ``loud_s``: how long it must slide beside hostile clients.
     """
     await place.until(client, alone, "hostile clients gone")
     if not client.controls:
@@ -165,10 +164,10 @@ def slides(view: StateView) -> bool:
 async def by_hand(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
     """Manual mode that moves, a step of both speeds up or down twice a second.
 
-    Where the gateway gets no share of the processor for a second, no sign of life reaches the owner, and the mode
-    ends as it must. It is armed again then, until enough tries fell into it; every try is judged.
+    If the gateway gets no processor time for a second, no sign of life reaches the owner, and the mode ends as it must.
+    It is then armed again, until enough tries fall into it; every try is judged.
     """
-    # What those of the scene before have said is worked off by then.
+    # The commands of the previous scene's clients are processed by then.
     await place.until(client, alone, "hostile clients gone")
     await place.take_control(client)
     hand = Hand(place, client)
@@ -204,26 +203,26 @@ def moved(view: StateView) -> bool:
 
 
 def alone(view: StateView) -> bool:
-    """Nobody but the operator is there."""
+    """Only the operator is connected."""
     return view.clients.viewers + (view.clients.controller_id != 0) <= 1
 
 
 class Hand:
-    """The operator who moves the rig: gives signs of life, takes steps, arms again where the mode has ended."""
+    """The operator who moves the rig: sends signs of life, moves in steps, arms again if the mode has ended."""
 
     def __init__(self, place: Place, client: Client) -> None:
         """Nothing is armed."""
         self.place, self.client = place, client
         self.steps = 0
         self.again = 0
-        """How often the mode was armed after it had ended."""
+        """How often the mode was armed again."""
         self.why = ""
-        """Why it had ended, the last time."""
+        """Reason for its last end."""
         self._armed = False
 
     @asynccontextmanager
     async def at_work(self) -> AsyncGenerator[None]:
-        """Give signs of life and take steps while the block lasts."""
+        """Send signs of life and move in steps during the block."""
         tasks = [asyncio.create_task(self._attend()), asyncio.create_task(self._move())]
         try:
             yield
@@ -232,7 +231,7 @@ class Hand:
                 task.cancel()
 
     async def armed(self) -> None:
-        """See that manual mode stands. Raises NotReachedError."""
+        """Ensure that manual mode is armed. Raises NotReachedError."""
         end_s = clock.monotonic() + ARM_S
         while not moved(self.client.state):
             if clock.monotonic() > end_s or self.client.lost:
@@ -248,7 +247,7 @@ class Hand:
             await asyncio.sleep(SIGN_S)
 
     async def arm_by_force(self) -> None:
-        """Take control and arm, again and again."""
+        """Repeatedly take control and arm."""
         while not self.client.lost:
             with suppress(RefusedError, LostError, TimeoutError):
                 await (await begun(self.place, self.client, Arm()))
@@ -270,7 +269,7 @@ class Hand:
 
 
 async def torn_away(place: Place, client: Client, attack: Attack, count: int) -> AsyncIterator[Figure]:
-    """The operator arms manual mode again and again, others tear control away: it ends each time, STOP is heard."""
+    """The operator repeatedly arms manual mode, others tear control away: it ends each time, and STOP arrives."""
     hand = Hand(place, client)
     with attack(BY_FORCE):
         await asyncio.sleep(SETTLE_S)
@@ -291,7 +290,7 @@ async def torn_away(place: Place, client: Client, attack: Attack, count: int) ->
 
 @dataclass(slots=True)
 class Planned:
-    """What is known of planning: the time from an order to its run, for each condition, s; 0 before the first run."""
+    """Planning time from an order to its run, per condition, s; 0 before the first run."""
 
     condition_s: float = 0.0
 
@@ -301,7 +300,7 @@ async def planning(
 ) -> AsyncIterator[Figure]:
     """A large recipe is being planned and handed over: STOP ends that, and nothing moves.
 
-    Where the time is known from a smaller recipe, STOP comes before the run: its tables take ten times as long then.
+    If the time is known from a smaller recipe, STOP comes before the run: its tables then take ten times as long.
     """
     recipe = place.folder / "big.yaml"
     recipe.write_text(big(conditions), encoding="utf-8")
@@ -336,17 +335,17 @@ async def planning(
 
 
 REFUSED, AT_ONCE, LATER = "refused", "ended at the first scan", "sent after the first scan"
-"""How a planned run ends that STOP was sent to."""
+"""End states of a planned run that received STOP."""
 
 
 def moment(number: int, count: int) -> float:
-    """Return when a try comes, as a share of the time from the order to the run: over all of it, each second one near
-    its end, where the plan is handed over."""
+    """Return the time of a try as a share of the time from the order to the run: over all of it, every second one near
+    its end, when the plan is handed over."""
     return number / count if number % 2 else 0.85 + 0.2 * number / count
 
 
 async def end_of(place: Place, client: Client, order: asyncio.Task[object], name: str) -> str:
-    """Return how a run has ended that STOP was sent to under this name."""
+    """Return how a run ended that received STOP under this name."""
     why = await refusal_of(order)
     if why:
         return REFUSED if PROBE in why else why
@@ -359,7 +358,7 @@ async def end_of(place: Place, client: Client, order: asyncio.Task[object], name
 
 
 async def over(place: Place, client: Client, order: asyncio.Task[object]) -> RunView:
-    """Wait for the end of a run that has begun, its tables included, and return what is told of it."""
+    """Wait for the end of a run, including its tables, and return its reported end."""
     answer = await order
     begun = answer.get("run") if isinstance(answer, dict) else None
 
@@ -372,17 +371,17 @@ async def over(place: Place, client: Client, order: asyncio.Task[object]) -> Run
 
 
 BEFORE = 0.7
-"""Share of the time until the run begins, by a smaller recipe, in which the tries come."""
+"""The tries come within this share of the time until the run begins, as measured with a smaller recipe."""
 PLAN_S = 1200.0
-"""200,000 conditions are planned by then beside hostile clients, s."""
+"""Time to plan 200,000 conditions beside hostile clients, s."""
 TABLES_S = 1200.0
-"""Tables of 200,000 conditions are written by then, s."""
+"""Time to write the tables of 200,000 conditions, s."""
 STILL_M_S = 1e-3
 """A drive at rest shows less, m/s."""
 
 
 def still(folder: Path) -> bool:
-    """Return whether neither wheel nor belt has turned in a run, by its record."""
+    """Return whether neither wheel nor belt turned in a run, from its record."""
     with RunReader(folder) as reader:
         found = reader.samples()
     turned = [value for name in ("wheel_speed_m_s", "belt_speed_m_s") for value in found[name].tolist()]
@@ -390,14 +389,15 @@ def still(folder: Path) -> bool:
 
 
 async def begun(place: Place, client: Client, action: Action, within_s: float = ARM_S) -> asyncio.Task[object]:
-    """Give an order although others tear control away; return what waits for its answer. Raises NotReachedError."""
+    """Give an order although others tear control away; return the task that waits for its answer. Raises
+    NotReachedError."""
     end_s = clock.monotonic() + ARM_S
     while clock.monotonic() < end_s:
         take = asyncio.create_task(place.take_control(client))
-        order: asyncio.Task[object] = asyncio.create_task(client.command(action, within_s=within_s))  # right behind it
+        order: asyncio.Task[object] = asyncio.create_task(client.command(action, within_s=within_s))  # right after it
         with suppress(RefusedError, TimeoutError):
             await take
-        order.add_done_callback(lambda done: done.cancelled() or done.exception())  # whoever gave it may be gone
+        order.add_done_callback(lambda done: done.cancelled() or done.exception())  # its sender may be gone
         await asyncio.wait({order}, timeout=TAKEN_S)
         if not order.done() or "control" not in await refusal_of(order):
             return order
@@ -405,7 +405,7 @@ async def begun(place: Place, client: Client, action: Action, within_s: float = 
 
 
 async def refusal_of(order: asyncio.Task[object]) -> str:
-    """Return why an order was refused, "" where it was not."""
+    """Return why an order was refused, "" if it was not."""
     try:
         await order
     except RefusedError as error:

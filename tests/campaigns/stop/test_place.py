@@ -1,4 +1,4 @@
-"""How late scans were, from the notes of one run or of several."""
+"""The lateness of scans, from the records of one run or of several."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ SEEDS = range(20)
 
 
 def watched(seed: int, later_s: float = 0.0) -> Scans:
-    """Return ten seconds of scans; those beside others are later by so much than the others and a bare loop."""
+    """Return ten seconds of scans; those with others are so much later than those without others plus a bare loop."""
     drawn = random.Random(seed)
     scans = Scans.__new__(Scans)
     scans.seconds = 10.0
