@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.table2 [--sample] [--seeds N] [--jobs N]`: how uncertain the whole Table 2 comes out.
+"""`python -m tests.campaigns.table2 [--sample] [--seeds N] [--jobs N]`: the uncertainty of the whole Table 2.
 
-The recipe that ships, on the simulated rig. Every row with a value and without a doubt has a U of this wheel of at most
-8 %, and few rows have a doubt. Beside that, how many intervals hold what the rig knows to be true (model x condition x
-wheel, ``sim.record_truth``): rows of a seed share what a session's sensors are off by, so that count is no binomial.
-Prints a line a figure and exits 1 where one misses. A seed takes five minutes of processor time, compiled.
+The packaged recipe, on the simulated rig. Every row with a value and without a doubt has a U of this wheel of at most 8
+%, and few rows have a doubt. Also prints how many intervals contain the rig's truth (model x condition x wheel,
+``sim.record_truth``): rows of a seed share the errors of a session's sensors, so that count is not binomial. Prints a
+line a figure and exits 1 where one misses. A seed takes five minutes of processor time, compiled.
 """
 
 from __future__ import annotations
@@ -38,17 +38,17 @@ WIDEST_PERCENT, DOUBTS_PERCENT, COVERED_PERCENT = 8.0, 5.0, 85.0
 SLOW_M_S: Final = 0.1
 """Slip at which a diameter matters most."""
 WORN: Final = ("sim.wear=3",)
-"""Of the sample: a wheel that wears three times as fast as believed stands for a whole table's wear."""
+"""Of the sample: a wheel that wears three times as fast as believed represents a whole table's wear."""
 SAMPLE: Final = (
     (r"( +slip_velocity): \[.*\]", r"\1: [300 mm/s, 100 mm/s]"),
     (r"( +temperature): \[.*\]", r"\1: [40 degC, 55 degC]"),
     (r"(?m)^  - compound: \"[23]#\"\n", ""),
 )
-"""What leaves of the recipe the grid of slips: four conditions of one compound."""
+"""Reduces the recipe to the grid of slips: four conditions of one compound."""
 
 
 class Row(NamedTuple):
-    """A row as it came out: U of this wheel and the error, per cent of the coefficient; NaN where it is not known."""
+    """The result of a row: U of this wheel and the error, per cent of the coefficient; NaN if unknown."""
 
     seed: int
     words: str
@@ -66,7 +66,7 @@ class Row(NamedTuple):
 
 
 def recipe_text(*, sample: bool) -> str:
-    """Return the shipped recipe, or what the sample leaves of it; raises ValueError where a text to cut is missing."""
+    """Return the packaged recipe, or the sample's part of it; raises ValueError if a text to cut is missing."""
     text = recipes.find("table2").read_text(encoding="utf-8")
     if not sample:
         return text
@@ -113,7 +113,7 @@ def _row(seed: int, one: TableRow, database: sqlite3.Connection) -> Row:
 
 
 def figures(rows: Sequence[Row]) -> Iterator[Figure]:
-    """Yield what is asked of all rows."""
+    """Yield the figures of all rows."""
     trusted = [one for one in rows if one.trusted]
     slow = [one.u_percent for one in trusted if one.slow]
     wide = [f"seed {one.seed} {one.words} {one.u_percent:.1f} %" for one in trusted if one.u_percent > WIDEST_PERCENT]
@@ -131,7 +131,7 @@ def figures(rows: Sequence[Row]) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run everything; 1 where a figure misses."""
+    """Run everything; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.table2", description=(__doc__ or "").partition("\n")[2])
     parser.add_argument("--sample", action="store_true", help="four conditions on a wheel that wears fast")
     parser.add_argument("--seeds", type=int, metavar="N", help=f"seeds 1 to N (default {SEEDS})")

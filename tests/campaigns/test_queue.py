@@ -15,7 +15,7 @@ from tester.queue.fold import Queue
 from tests.campaigns.queue_life import Life
 
 LIVES = 12
-"""Lives within which a planted fault must be found."""
+"""Maximum number of lives to find a planted fault."""
 
 
 def misses(folder: Path, lives: int = LIVES) -> list[str]:

@@ -1,9 +1,9 @@
 """`python -m tests.campaigns.track [--sample] [--seeds N]`: a specimen on a track against its law, over seeds.
 
 The friction's scatter from specimen to specimen and the biases of air sensor and pyrometer are switched off, the noise
-of the sensors is on: what a row is off the law is then the doing of procedures, reduction and sensors. The law is asked
-at the specimen's true mean temperature; the row's temperature (on the disc less what the track is warmer than the
-specimen there) is held against it by itself. The seeds of grosch take each of Grosch's four rubbers in turn.
+of the sensors is on: a row's difference from the law then comes from procedures, reduction and sensors. The law is
+evaluated at the specimen's true mean temperature; the row's temperature (on the disc, less the excess of the track over
+the specimen there) is compared with it separately. The seeds of grosch take each of Grosch's four rubbers in turn.
 """
 
 from __future__ import annotations
@@ -25,14 +25,14 @@ from tests.tester.kinds.specimen_on_track.bench import FOUR_RUBBERS, TrackBench,
 
 SEEDS, SAMPLE_SEEDS = 8, 4
 MOST_PERCENT = 0.25
-"""Most that a coefficient may be off the law: settling to 0.5 % a stretch."""
+"""Maximum difference of a coefficient from the law: settling to 0.5 % a stretch."""
 MOST_K = 0.1
-"""Most that a temperature may be off: a step of the chamber's readings."""
+"""Maximum error of a temperature: a step of the chamber's readings."""
 RIGHT = ("sim.scatter=0", "sim.sensors.air_bias=0", "sim.sensors.pyrometer_bias=0")
 SAMPLED = ("-40 degC, -30 degC, -20 degC, -10 degC, 0 degC, 10 degC, 20 degC, 30 degC, 40 degC, 50 degC, 60 degC",
            "-10 degC, 20 degC, 50 degC")  # fmt: skip
 FASTER = "1e-6 m/s, 3.162e-6 m/s, "
-"""The two slowest speeds, four fifths of the time: left out of the sample."""
+"""The two slowest speeds take four fifths of the time: left out of the sample."""
 
 
 class Row(NamedTuple):
@@ -44,10 +44,10 @@ class Row(NamedTuple):
 
 
 class Truth:
-    """A run to its end, and the true mean temperature of the specimen in each of its repeats."""
+    """A whole run, and the true mean temperature of the specimen in each of its repeats."""
 
     def __init__(self, bench: TrackBench) -> None:
-        """Run it; scans that count for a repeat count here."""
+        """Run it; uses the scans that count for a repeat."""
         self.bench, ctx = bench, bench.run.engine.ctx
         self._sums: dict[int, tuple[int, float]] = {}
         while not bench.run.finished:

@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.wear [--sample] [--lives] [--jobs N]`: is a wheel's wear found, whatever was believed?
+"""`python -m tests.campaigns.wear [--sample] [--lives] [--jobs N]`: is a wheel's wear found, whatever the belief?
 
-Lives of wheels are drawn by seed (``tests.campaigns.lives``): no trip, the slip that is asked for, the rate learnt.
-The recipe ``wear`` runs for several seeds at three rates. What the software believes of the rate is wrong by a factor
-of three or more each time, and how much the tread grows with heat is drawn, for every run, from the whole range that
-its stated uncertainty stands for. Prints a line a figure and exits 1 where one misses.
+Lives of wheels are drawn by seed (``tests.campaigns.lives``): no trip, the requested slip, the rate learnt. The recipe
+``wear`` runs for several seeds at three rates. The software's belief of the rate is wrong by a factor of three or more
+each time, and the tread's growth with heat is drawn, for every run, from the whole range that its stated uncertainty
+covers. Prints a line a figure and exits 1 where one misses.
 """
 
 from __future__ import annotations
@@ -31,20 +31,20 @@ RATES = {0.02: 0.08, 0.08: 0.24, 0.24: 0.08}
 """Rate put into the simulated rig, and the rate that the software believes, mm3/(N m)."""
 SEEDS, SAMPLE = 20, 2
 OF_EACH, OF_ALL = 0.8, 53 / 60
-"""Shares of seeds whose stated interval has to hold the rate: 16 of 20, 53 of 60."""
+"""Required shares of seeds whose stated interval contains the rate: 16 of 20, 53 of 60."""
 WIDEST, WIDEST_MM3_N_M = 0.25, 0.012
-"""An interval that is wider than both, as a share of the rate and by itself, says nothing [A]."""
+"""An interval wider than both, as a share of the rate and by itself, is useless [A]."""
 
 
 class Case(NamedTuple):
-    """One run to be made."""
+    """One run to make."""
 
     rate: float
     seed: int
 
 
 class Found(NamedTuple):
-    """What a run has found of the whole wheel, and in how many of its conditions the interval held the rate."""
+    """A run's result for the whole wheel, and in how many of its conditions the interval contained the rate."""
 
     case: Case
     exit_code: int
@@ -56,7 +56,7 @@ class Found(NamedTuple):
 
     @property
     def covered(self) -> bool:
-        """Tell whether the stated interval holds the rate that was put in."""
+        """Return whether the stated interval contains the true rate."""
         return abs(self.rate - self.case.rate) <= self.expanded
 
 
@@ -86,7 +86,7 @@ def carry_out(case: Case) -> Found:
 
 
 def figures(found: Sequence[Found], seeds: int) -> Iterator[tuple[str, bool]]:
-    """Yield every figure in words, and whether it is kept."""
+    """Yield every figure in words, and whether it passes."""
     ended = sum(one.exit_code == 0 for one in found)
     yield f"runs that ended in order: {ended} of {len(found)} (asked: all)", ended == len(found)
     for rate, believed in RATES.items():
@@ -106,7 +106,7 @@ def figures(found: Sequence[Found], seeds: int) -> Iterator[tuple[str, bool]]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run everything; 1 where a figure misses."""
+    """Run everything; return 1 if a figure misses."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.wear", description=(__doc__ or "").partition("\n")[2])
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE} seeds a rate instead of {SEEDS}")
     parser.add_argument("--lives", action="store_true", help="the lives of wheels alone")

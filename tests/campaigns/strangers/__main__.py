@@ -1,8 +1,8 @@
-"""`python -m tests.campaigns.strangers [--sample]`: defects that are in no list, drawn by seed, at the limits.
+"""`python -m tests.campaigns.strangers [--sample]`: unlisted defects, drawn by seed, at the limits.
 
 Each case gives one or two quantities of a machine a defect of any size, sign and course, at any moment of a recipe at
 the limits, of a resumed run, or of commissioning. Harm is judged in the plant. It may come only in rows of
-docs/hardware-strangers.csv, which name the device that must hold. Exit code 1 where a figure misses.
+docs/hardware-strangers.csv, which name the device that must prevent it. Exit code 1 if a figure misses.
 """
 
 from __future__ import annotations
@@ -30,8 +30,8 @@ RECIPES = {WHEEL: 6, TRACK: 2}
 SAMPLE = {WHEEL: 24, TRACK: 30}
 SAMPLE_COMMISSIONED = 3
 NOTICED = {WHEEL: 0.5, TRACK: 0.5, commissioned.NAME: 0.2}
-"""Share of the cases that must be noticed at least: defects without effect prove nothing. A step of commissioning uses
-few parts, so fewer defects show in it: of the sample's three cases none need."""
+"""Minimum share of detected cases: defects without effect prove nothing. A step of commissioning uses few parts, so
+fewer defects show in it: the sample's three cases need not be detected."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -76,7 +76,7 @@ def _results(every: Sequence[Share], jobs: int) -> Iterable[list[tuple[Case, Out
 
 
 def judged(kind: str, found: Sequence[tuple[Case, Outcome]], asked: int) -> bool:
-    """Print the figures of a kind's cases; return whether all are met."""
+    """Print the figures of a kind's cases; return whether all pass."""
     harmed = [(case, outcome) for case, outcome in found if outcome.harm]
     rows = Counter(row.device for case, _ in harmed if (row := row_of(kind, case)) is not None)
     outside = [(case, outcome) for case, outcome in harmed if row_of(kind, case) is None]

@@ -1,4 +1,4 @@
-"""Defects that begin while a wheel's machine is commissioned: in any of the steps that have it on their wires."""
+"""Defects that begin while a wheel's machine is commissioned: in any step that uses its wires."""
 
 from __future__ import annotations
 
@@ -21,17 +21,17 @@ from tests.tester.kinds.wheel_on_belt.commission.twin_bench import Bench
 
 NAME = "commissioning"
 LASTS_S = {"cell": 260.0, "thermometer": 300.0, "watchdogs": 20.0, "spring": 20.0, "relay": 15.0}
-"""How long a step takes on a sound machine, s; others USUAL_S."""
+"""Duration of a step on a sound machine, s; others USUAL_S."""
 USUAL_S = 35.0
 OF_STEP = {
     "cell": "load cell", "spring": "press", "home": "press", "relay": "belt", "touch": "press", "rolling": "belt",
     "thermometer": "thermometer",
 }  # fmt: skip
-"""What a step looks at: the first defect of a case is of it. A jog looks at its own axis, the others at any part."""
+"""The parts that a step uses: the first defect of a case is in them. A jog uses its own axis, the others any part."""
 PLANNED_W = 120.0
-"""Slip speed times load that commissioning asks for at most, W: 200 N at 0.6 m/s."""
+"""Maximum slip speed times load in commissioning, W: 200 N at 0.6 m/s."""
 GIVEN_UP_S = 600.0
-"""A commissioning that waits for a person so long is ended, s of rig time."""
+"""A commissioning that waits for a person this long is ended, s of rig time."""
 _OF_FRAMES = ("frames lost", "frozen", "commands lost", "off the bus", "computer late")
 
 
@@ -43,14 +43,14 @@ class Watched:
     """Gives each world of a commissioning its defects, and watches it for harm."""
 
     def __init__(self, case: Case) -> None:
-        """Begin with no world yet."""
+        """No world yet."""
         self.case, self.outcome = case, Outcome()
         self._observer: HarmObserver | None = None
         self._defects: list[tuple[float, Defect]] = []
         self._begun: list[Defect] = []
 
     def look(self, world: WheelRig) -> None:
-        """Look at the world in one of its ticks."""
+        """Check the world in one of its ticks."""
         now = world.now_s
         if self._observer is None or self._observer.rig is not world:
             self._observer = HarmObserver(world, PLANNED_W)
@@ -75,7 +75,7 @@ class Watched:
         self.outcome.harm |= harm
 
     def end(self) -> None:
-        """Note what is missing to the safe state when commissioning has ended; a press that is held keeps its load."""
+        """Record what the safe state lacks after commissioning; a press that is held keeps its load."""
         if self._observer is not None:
             world = self._observer.rig
             for _ in range(300):

@@ -14,11 +14,9 @@ Apply = Callable[[Scene, float], None]
 
 @dataclass(frozen=True, slots=True)
 class Place:
-    """A quantity of a machine that can go wrong.
-
-    ``low`` to ``high`` are the sizes that are drawn, in ``unit``; 0 is sound. ``make`` returns the function that gives
-    the place a size. ``slow``: temperatures follow, so a case is watched for longer. ``whole``: it is there or not.
-    ``rises_s``: the place cannot change faster than this, s.
+    """A quantity of a machine that can fail. ``low`` to ``high`` are the sizes that are drawn, in ``unit``; 0 is sound.
+    ``make`` returns the function that sets the place's size. ``slow``: temperatures follow, so a case is watched for
+    longer. ``whole``: the defect is either present or absent. ``rises_s``: the place cannot change faster than this, s.
     """
 
     name: str
@@ -33,9 +31,8 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Course:
-    """Size over time as a share of the drawn one: full after ``rises_s``, then there for ``duty`` of each ``every_s``.
-
-    The defect is gone for good after ``lasts_s``.
+    """Size over time as a share of the drawn one: full after ``rises_s``, then present for ``duty`` of each
+    ``every_s``. The defect ends permanently after ``lasts_s``.
     """
 
     rises_s: float = 0.0
@@ -44,13 +41,13 @@ class Course:
     lasts_s: float = inf
 
     def share(self, age_s: float) -> float:
-        """Return the share at this age, 0 to 1."""
+        """Return the share at an age, 0 to 1."""
         if age_s >= self.lasts_s or (self.every_s < inf and age_s % self.every_s >= self.duty * self.every_s):
             return 0.0
         return min(age_s / self.rises_s, 1.0) if self.rises_s > 0.0 else 1.0
 
     def __str__(self) -> str:
-        """Return the course in words."""
+        """Return the course as text."""
         words: list[str] = []
         if self.rises_s > 0.0:
             words.append(f"within {self.rises_s:.3g} s")
@@ -62,7 +59,7 @@ class Course:
 
 
 class Defect(Effect):
-    """A defect in action."""
+    """An active defect."""
 
     every_step = True
 
@@ -91,7 +88,7 @@ class Defect(Effect):
 
 
 class Reading:
-    """A sensor between its source and its device, with a gain, an offset, noise, or a reading that is held."""
+    """A sensor between its source and its device, with a gain, an offset, noise, or a frozen reading."""
 
     def __init__(self, source: Any, channel: int, floor: float) -> None:
         """Replace ``source``; a gain counts from ``floor``. ``channel``: of a load cell's forces."""

@@ -13,9 +13,9 @@ from tests.campaigns.strangers.scenes import Moment
 PAIRS = 0.5
 """Share of the cases with two defects."""
 STOPS = 0.15
-"""Share of the cases in which the operator stops the run soon after the defect's beginning."""
+"""Share of the cases in which the operator stops the run soon after the defect begins."""
 APART_S = 20.0
-"""The second defect begins up to this much after the first, in half of the pairs; else both begin together."""
+"""The second defect begins up to this long after the first, in half of the pairs; otherwise both begin together."""
 LONGEST_RISE_S = 900.0
 
 
@@ -29,7 +29,7 @@ class Drawn:
     after_s: float = 0.0
 
     def __str__(self) -> str:
-        """Return the defect in words."""
+        """Return the defect as text."""
         size = "" if self.place.whole else f" {self.size:+.3g} {self.place.unit}".rstrip()
         later = f" {self.after_s:.3g} s later" if self.after_s else ""
         return f"{self.place.name}{size} ({self.course}){later}"
@@ -55,7 +55,7 @@ class Case:
         return any(one.place.slow or one.course.rises_s > 10.0 for one in self.defects)
 
     def __str__(self) -> str:
-        """Return the case in words."""
+        """Return the case as text."""
         stop = f", {self.stop} after {self.stop_s:.2f} s" if self.stop else ""
         where = f"{self.moment.recipe}, tick {self.moment.tick} ({self.moment.place})"
         return f"{where}: {' + '.join(map(str, self.defects))}{stop}"
@@ -84,7 +84,7 @@ def defect(chooser: random.Random, places: Sequence[Place], after_s: float = 0.0
 
 
 def cases(chooser: random.Random, moments: Sequence[Moment], places: Sequence[Place], count: int) -> Iterator[Case]:
-    """Yield ``count`` cases: each step is drawn as often as each other, whatever its number of moments."""
+    """Yield ``count`` cases: all steps are equally likely, whatever their number of moments."""
     steps: dict[str, list[Moment]] = {}
     for moment in moments:
         steps.setdefault(moment.step.rpartition(" ")[2], []).append(moment)

@@ -1,4 +1,4 @@
-"""The places of both kinds of machine that can go wrong, from their wires, drives and physics."""
+"""The places of both kinds of machine that can fail: wires, drives and physics."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ _FEW = 1e-6
 
 
 def _reading(device: str, what: str, channel: str = "fz") -> Callable[[Scene], Apply]:
-    """Return what spoils a device's reading: ``what`` is "gain", "offset" or "holds"."""
+    """Return an effect that spoils a device's reading: ``what`` is "gain", "offset" or "holds"."""
 
     def make(scene: Scene) -> Apply:
         slave: Any = scene.rig.devices[device]
@@ -34,7 +34,7 @@ def _reading(device: str, what: str, channel: str = "fz") -> Callable[[Scene], A
 
 
 def _switch(effect: Callable[[], Effect]) -> Callable[[Scene], Apply]:
-    """Return what begins an effect at any size and ends it at 0."""
+    """Return a function that begins an effect at any size and ends it at 0."""
 
     def make(scene: Scene) -> Apply:
         running: list[Effect] = []
@@ -52,7 +52,7 @@ def _switch(effect: Callable[[], Effect]) -> Callable[[Scene], Apply]:
 
 
 def _on_axis(axis: str, act: Callable[[Any, float], None]) -> Callable[[Scene], Apply]:
-    """Return what acts on a drive with each size."""
+    """Return a function that applies each size to a drive."""
     return lambda scene: lambda scene, size: act(scene.rig.axes[axis], size)
 
 
@@ -69,7 +69,7 @@ def _runs(drive: Any, speed: float) -> None:
 
 
 def _brakes(axis: str) -> Callable[[Scene], Apply]:
-    """Return what makes an axis brake with less than the ramp that its drive was given, by a share."""
+    """Return an effect that makes an axis brake less than its drive's ramp, by a share."""
 
     def make(scene: Scene) -> Apply:
         drive: Any = scene.rig.axes[axis]
@@ -98,7 +98,7 @@ def _held(drive: Any, size: float) -> None:
 
 
 def _scale(sensor: str) -> Callable[[Scene], Apply]:
-    """Return what makes a shaft turn slower than its drive shows, by a share."""
+    """Return an effect that makes a shaft turn slower than its drive shows, by a share."""
 
     def make(scene: Scene) -> Apply:
         shown: Any = getattr(scene.rig.plant, sensor)
@@ -114,7 +114,7 @@ def _scale(sensor: str) -> Callable[[Scene], Apply]:
 
 
 def _torque(shaft: str) -> Callable[[Scene], Apply]:
-    """Return what makes a drive show another torque, by a share."""
+    """Return an effect that makes a drive show a wrong torque, by a share."""
 
     def make(scene: Scene) -> Apply:
         shown: Any = getattr(scene.rig, shaft)
@@ -129,12 +129,12 @@ def _torque(shaft: str) -> Callable[[Scene], Apply]:
 
 
 def _plant(act: Callable[[Any, float], None]) -> Callable[[Scene], Apply]:
-    """Return what acts on the plant with each size."""
+    """Return a function that applies each size to the plant."""
     return lambda scene: lambda scene, size: act(scene.rig.plant, size)
 
 
 def _touch(scene: Scene) -> Apply:
-    """Return what moves the wheel towards the belt behind the press's encoder, mm."""
+    """Return an effect that moves the wheel towards the belt, unseen by the press's encoder, mm."""
     sound = [0.0]
 
     def apply(scene: Scene, size: float) -> None:
@@ -145,7 +145,7 @@ def _touch(scene: Scene) -> Apply:
 
 
 def _stiffness(scene: Scene) -> Apply:
-    """Return what makes the rubber stiffer, by a share: it takes effect with the next change of its temperature."""
+    """Return an effect that makes the rubber stiffer, by a share, from the next change of its temperature."""
     plant: Any = scene.rig.plant
     sound = plant._cold_factor
 
@@ -156,7 +156,7 @@ def _stiffness(scene: Scene) -> Apply:
 
 
 def _belt_slip(scene: Scene) -> Apply:
-    """Return what makes the belt slower than its roller, by a share."""
+    """Return an effect that makes the belt slower than its roller, by a share."""
     rig: Any = scene.rig
     scale = _scale("belt_speed")(scene)
 
@@ -168,7 +168,7 @@ def _belt_slip(scene: Scene) -> Apply:
 
 
 def _element(device: str) -> Callable[[Scene], Apply]:
-    """Return what gives a controller's heater a power of its own, percent (0: that of its output)."""
+    """Return an effect that fixes the power of a controller's heater, percent (0: that of its output)."""
 
     def make(scene: Scene) -> Apply:
         slave: Any = scene.rig.devices[device]
@@ -182,7 +182,7 @@ def _element(device: str) -> Callable[[Scene], Apply]:
 
 
 def _output(device: str) -> Callable[[Scene], Apply]:
-    """Return what holds a controller's output, percent."""
+    """Return an effect that freezes a controller's output, percent."""
 
     def make(scene: Scene) -> Apply:
         slave: Any = scene.rig.devices[device]
@@ -213,7 +213,7 @@ def _chain(scene: Scene, size: float) -> None:
 
 
 def _late(scene: Scene) -> Apply:
-    """Return what stops the computer for some seconds, each time the size comes up."""
+    """Return an effect that stops the computer for some seconds, each time the size rises."""
     was = [0.0]
 
     def apply(scene: Scene, size: float) -> None:
@@ -226,7 +226,7 @@ def _late(scene: Scene) -> Apply:
 
 def _readings(device: str, *, gain: float, offset: float, unit: str, channel: str = "fz", slow: bool = False,
               floor: float = -1.0) -> list[Place]:  # fmt: skip
-    """Return the places of a reading: its gain, its offset, and that it is held."""
+    """Return the places of a reading: its gain, its offset, and its freezing."""
     name = f"{device} {channel}" if channel != "fz" else device
     return [
         Place(f"{name} gain", "", max(-gain, floor), gain, _reading(device, "gain", channel), slow),

@@ -133,7 +133,7 @@ def _changed(corner: Corner) -> str:
 def moments(setup: Setup) -> tuple[Moment, ...]:
     """Return the moments of a recipe: begin, middle and end of each step, and of the stop that follows.
 
-    Raises ValueError where it trips without a defect, or something harms.
+    Raises ValueError if it trips without a defect, or does harm.
     """
     stage = setup.stage()
     found = moments_of(setup.name, stage, cooled=False)

@@ -1,4 +1,4 @@
-"""Defects that are drawn, their courses, and what comes of a case (``python -m tests.campaigns.strangers``)."""
+"""Drawn defects, their courses, and the outcome of a case (``python -m tests.campaigns.strangers``)."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.campaigns.strangers.scenes import TRACK, WHEEL, setups
 ELSEWHERE = ("silent", "late", "commanded", "by itself")
 """Ends of names of places that show on a line, in the computer, or on an axis that has power."""
 LOOKED_AT_AGAIN = frozenset({"impair", "still", "settled", "watching", "stale"})
-"""Impairments of a line are counted down; the others only say that something is looked at once more."""
+"""Impairments of a line are counted down; the others only cause another check."""
 MOMENT = Moment("a recipe", 0, "4 rest rest", "begin")
 
 

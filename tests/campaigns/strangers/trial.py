@@ -1,4 +1,4 @@
-"""What comes of a case: harm in the plant, and what the machine noticed before or after it."""
+"""The outcome of a case: harm in the plant, and what the machine noticed before or after it."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ from tests.campaigns.strangers.defect import Defect
 from tests.campaigns.strangers.draw import Case, Drawn
 
 WATCHED_S, SLOW_S = 25.0, 900.0
-"""How long a case is watched that nothing ends, s of rig time; a slow one SLOW_S."""
+"""How long an unending case is watched, s of rig time; a slow one SLOW_S."""
 STANDS, ENDED = "motion where everything must stand", ("latched", "idle", "cooldown")
 ENDED_S = 12.0
-"""How long a case is watched after its run has ended, s."""
+"""How long a case is watched after its run ends, s."""
 
 
 @dataclass(slots=True)
@@ -35,7 +35,7 @@ class Outcome:
 
     @property
     def unseen(self) -> bool:
-        """Harm that nothing noticed."""
+        """Undetected harm."""
         return bool(self.harm) and not self.noticed
 
     def __str__(self) -> str:
@@ -52,7 +52,7 @@ def _injection(one: Drawn, now: float) -> Injection:
 
 
 def tried(stage: Stage, case: Case) -> Outcome:
-    """Let the case's defects begin on this stage and watch what comes of them."""
+    """Start the case's defects on this stage and watch the outcome."""
     outcome, began_s = Outcome(), stage.next_s
     stage.inject(*(_injection(one, began_s) for one in case.defects))
     if case.stop:
@@ -69,7 +69,7 @@ def tried(stage: Stage, case: Case) -> Outcome:
             ended_s = now
         if stage.observer.found and outcome.harmed_s == inf:
             outcome.harmed_s = now - began_s
-            until_s = max(min(until_s, now + 60.0), now + SAFE_S)  # what notices harm so late is too late
+            until_s = max(min(until_s, now + 60.0), now + SAFE_S)  # later detection of harm is too late
     outcome.noticed = outcome.noticed or stage.run.reason
     outcome.harm = _harm(stage, began_s, now)
     outcome.broken = dict(stage.invariants.broken)
@@ -77,7 +77,7 @@ def tried(stage: Stage, case: Case) -> Outcome:
 
 
 def _harm(stage: Stage, began_s: float, now: float) -> dict[str, str]:
-    """Return the harm that was done, and what is missing to the safe state long after the end.
+    """Return the harm done, and what the safe state lacks long after the end.
 
     An axis with false data may turn for its stop's time and a second after control believes that it is at rest.
     """

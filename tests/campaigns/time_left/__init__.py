@@ -1,1 +1,1 @@
-"""How well a run knows where it is: time left, the list of steps, finished conditions."""
+"""How well a run reports its progress: time left, the list of steps, finished conditions."""

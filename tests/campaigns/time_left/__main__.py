@@ -1,9 +1,9 @@
-"""`python -m tests.campaigns.time_left [--sample] [--seeds N] [--jobs N]`: does a run know how long it still takes?
+"""`python -m tests.campaigns.time_left [--sample] [--seeds N] [--jobs N]`: does a run predict its remaining time?
 
-Five recipes run for several seeds on rigs whose heat, wear, wheel and friction heat are drawn for every run and are not
-what their files believe. At 10 % to 90 % of what a run took in the end, the time left that its head line printed is
-compared with what it still took; the list of steps is added up as it is printed; conditions that are over are counted
-against the record, in resumed runs and in replays too. Prints a line a figure and exits 1 where one misses.
+Five recipes run for several seeds on rigs whose heat, wear, wheel and friction heat are drawn for every run and differ
+from their files' beliefs. At 10 % to 90 % of a run's final duration, the time left printed in its head line is compared
+with the true one; the printed list of steps is added up; finished conditions are counted and compared with the record,
+also in resumed runs and replays. Prints a line a figure and exits 1 if one misses.
 """
 
 from __future__ import annotations
@@ -22,16 +22,16 @@ from tests.campaigns.time_left.looks import Look, Looked
 
 SEEDS, SAMPLE_SEEDS = 20, 1
 MOST: Final = 0.07
-"""Median of the errors of the time left, share of what was left, over all seeds."""
+"""Median error of the time left, as a share of the true one, over all seeds."""
 SAMPLE_MOST: Final = 0.3
 """The same for the sample. The median of one seed is 4 to 19 % in 20 seeds: a sample shows gross errors only."""
 AT: Final = tuple(tenth / 10.0 for tenth in range(1, 10))
-"""Shares of a run's time at which it is asked."""
+"""Shares of a run's time at which the time left is read."""
 SLACK_S: Final = 1.0
-"""A condition that ends within this of a look may count or not: screens are drawn between two scans."""
+"""A condition that ends within this time of a look may count or not: screens are drawn between two scans."""
 
 def errors(looked: Looked) -> Iterator[float]:
-    """Yield by how much the time left was off at each of the moments, as a share of what was left."""
+    """Yield the error of the time left at each of the moments, as a share of the true one."""
     for share in AT:
         at = max((one for one in looked.looks if one.t_s <= share * looked.took_s), key=_time, default=None)
         if at is not None:
@@ -44,7 +44,7 @@ def _time(look: Look) -> float:
 
 
 def miscounted(looked: Looked) -> int:
-    """Return at how many looks conditions were counted wrong."""
+    """Return the number of looks with a wrong count of conditions."""
     wrong = 0
     for look in looked.looks:
         least, most = (sum(one <= look.t_s + by_s for one in looked.ended_s) for by_s in (-SLACK_S, SLACK_S))
@@ -53,7 +53,7 @@ def miscounted(looked: Looked) -> int:
 
 
 def report(found: Sequence[tuple[Case, list[Looked]]], seeds: int, most: float) -> int:
-    """Print the figures; return how many miss. ``most``: the greatest median error."""
+    """Print the figures; return the number of misses. ``most``: the greatest median error."""
     missed = 0
     runs = [(case, looked) for case, several in found for looked in several]
     whole = [(case, looked) for case, looked in runs if looked.name == "run"]

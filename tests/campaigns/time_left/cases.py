@@ -1,4 +1,4 @@
-"""The runs: five recipes, on rigs that are not what their files believe."""
+"""The runs: five recipes, on rigs that differ from their files' beliefs."""
 
 from __future__ import annotations
 
@@ -44,7 +44,7 @@ class Recipe(NamedTuple):
 
 
 class Case(NamedTuple):
-    """One run to be made; ``cut``: stopped on its way, and resumed."""
+    """One run to make; ``cut``: stopped on its way, and resumed."""
 
     recipe: Recipe
     seed: int
@@ -52,7 +52,7 @@ class Case(NamedTuple):
 
 
 def packaged(name: str, rig: str = "sim") -> Recipe:
-    """Return a recipe that ships."""
+    """Return a packaged recipe."""
     return Recipe(name, rig, Path(recipes.find(name)).read_text(encoding="utf-8"))
 
 
@@ -64,7 +64,7 @@ def all_recipes() -> list[Recipe]:
 
 
 def truth(rig: str, seed: int) -> tuple[str, ...]:
-    """Return how a rig is unlike what its file believes, drawn for a seed."""
+    """Return a rig's differences from its file's beliefs, drawn for a seed."""
     if rig != "sim":
         return ()
     drawn = Random(f"truth {seed}").uniform
@@ -79,7 +79,7 @@ def truth(rig: str, seed: int) -> tuple[str, ...]:
 
 
 def carry_out(case: Case) -> tuple[Case, list[Looked]]:
-    """Make a run, looked at in every scan: what a run on a machine shows ten times a second."""
+    """Make a run with a look in every scan, as a run on a machine is shown ten times a second."""
     tickers.POLL_S = 0.0
     recipe = case.recipe
     return case, in_a_folder(recipe.text, recipe.rig, truth(recipe.rig, case.seed), case.seed, cut=case.cut)

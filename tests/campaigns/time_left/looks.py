@@ -1,4 +1,4 @@
-"""Runs that write down what they show of themselves: the time left, the list's sum as it is printed, the counts."""
+"""Runs that record their display: the time left, the printed list's sum, the counts."""
 
 from __future__ import annotations
 
@@ -28,15 +28,15 @@ from tests.campaigns.compiled.worker import Silent
 from tests.tester.service.views import state
 
 EVERY_S: Final = 5.0
-"""A run is looked at this often, rig seconds."""
+"""Interval between looks at a run, rig seconds."""
 ROWS: Final = 12
-"""Rows of the list of steps that is added up."""
+"""Rows of the list of steps to add up."""
 _LATER = re.compile(r"~(\d+):(\d\d):(\d\d)")
 _HEAD = re.compile(r"(?:(\d+)/(\d+) done.*)?left (\d+):(\d\d):(\d\d)")
 
 
 class Look(NamedTuple):
-    """What was seen at a moment: rig seconds of the run, and what the screen printed, s and conditions."""
+    """A look at a moment: rig seconds of the run, and the screen's output, s and conditions."""
 
     t_s: float
     left_s: float
@@ -46,7 +46,7 @@ class Look(NamedTuple):
 
 
 class Looked(NamedTuple):
-    """A run that was looked at: rig seconds it took, when each of its conditions was over, what was seen."""
+    """An observed run: its rig seconds, the end of each of its conditions, and the looks."""
 
     name: str
     took_s: float
@@ -56,7 +56,7 @@ class Looked(NamedTuple):
 
 
 def printed(scene: ScreenScene) -> tuple[float, float, int, int] | None:
-    """Return what screens print: time left of the head and of the list, s; conditions over and in all."""
+    """Return the screens' output: time left of the head and of the list, s; conditions finished and in all."""
     head = _HEAD.search(_text(StateLine().picture(scene, 300, 1)))
     if head is None:
         return None
@@ -74,7 +74,7 @@ def _seconds(clock: Sequence[str]) -> float:
 
 
 class Observer(Silent):
-    """A screen that notes what a run prints; one that stops it once its share is done, where that is asked for."""
+    """A screen that records a run's output, and optionally stops the run after a share of it."""
 
     def __init__(self, stop_at: float = 1.0) -> None:
         super().__init__()
@@ -84,7 +84,7 @@ class Observer(Silent):
         self._before_s, self._last_s, self._part, self._due_s = 0.0, 0.0, 1, 0.0
 
     def show(self, now_s: float, run: Progress, at: RunPosition) -> None:
-        """Note it."""
+        """Record it."""
         if at.part != self._part:
             self._before_s, self._part, self._due_s = self._before_s + self._last_s, at.part, 0.0
         self._last_s = now_s
@@ -106,7 +106,7 @@ class Observer(Silent):
 
 
 class Observed(Session):
-    """A session that is looked at through what a client of the service is sent."""
+    """A session observed through the messages to a client of the service."""
 
     def tracked(self, work: Work) -> PlanTrack:
         """Return the count of its steps with the words of a screen."""
@@ -123,7 +123,7 @@ def carry_out(recipe: str, rig: str, overrides: tuple[str, ...], seed: int, fold
 
 
 def interrupted(recipe: str, rig: str, overrides: tuple[str, ...], seed: int, folder: Path) -> tuple[Looked, Looked]:
-    """Stop a run at a drawn share and resume it; return what its second stretch shows, and what a replay shows."""
+    """Stop a run at a drawn share and resume it; return the looks of its second stretch, and of a replay."""
     share = Random(f"stop {seed}").uniform(0.3, 0.8)
     first = Observer(share)
     session = first.session = Observed(_options(recipe, rig, overrides, seed, folder), first)
@@ -138,7 +138,7 @@ def interrupted(recipe: str, rig: str, overrides: tuple[str, ...], seed: int, fo
 
 
 def replayed(folder: Path) -> Looked:
-    """Return what a replay of a run shows."""
+    """Return the looks of a replay of a run."""
     playback, scene = load(folder), ScreenScene(now=lambda: 0.0)
     looks: list[Look] = []
     for part in range(1, 100):

@@ -2,12 +2,12 @@
 
 Boots user-mode Linux on this computer's own file system (Debian: user-mode-linux, kmod, iproute2, can-utils), makes a
 vcan there, puts the simulated rig on it (`tester sim --can socketcan:vcan0`) and runs a short recipe with the rig
-file's interface socketcan. Then it runs it again, and `cansend` tells a node to start anew in the middle of it.
+file's interface socketcan. Then it runs it again, and `cansend` resets a node in the middle of it.
 
-The kernel has one processor, a system call takes it some 30 us, and its host is shared: the rig file's limits of time
-are widened, as LIMITS says, and the reply limits of the three devices to 400 ms. As root the kernel runs with real-time
-priority (SCHED_RR 1): it needs half a processor for two minutes. Exit code 1 where a figure misses, 0 with a line
-"skipped" where a program is missing.
+The kernel has one processor, a system call takes about 30 us, and its host is shared: LIMITS widens the rig file's time
+limits, and the reply limits of the three devices are 400 ms. As root the kernel runs with real-time priority (SCHED_RR
+1): it needs half a processor for two minutes. Exit code 1 where a figure misses, 0 with a line "skipped" where a
+program is missing.
 """
 
 from __future__ import annotations
@@ -31,12 +31,12 @@ from tests.campaigns.doors.__main__ import RECIPE, SAMPLE_SLIPS
 
 PROGRAMS = {"linux.uml": "user-mode-linux", "insmod": "kmod", "ip": "iproute2", "cansend": "can-utils",
             "setpriv": "util-linux"}  # fmt: skip
-"""What is needed, by its Debian package."""
+"""Required programs, by Debian package."""
 MODULES = Path("/usr/lib/uml/modules")
 MEMORY = "2G"
 PATIENCE_S = 900.0
 FOREIGN = "000#8101"
-"""NMT, reset node 1: what no other program may send."""
+"""NMT, reset node 1: no other program may send this."""
 REPLY_MS = 400
 PROFILES = {"load_cell": "four_axis_transmitter", "jacket": "simulated_jacket", "ir_thermometer": "calex_pyrominibus"}
 LIMITS = {
@@ -55,7 +55,7 @@ LIMITS = {
 
 
 def missing() -> list[str]:
-    """Return what has to be installed first."""
+    """Return the missing packages."""
     if sys.platform != "linux":
         return ["Linux"]
     search = os.pathsep.join((os.environ.get("PATH", ""), "/usr/sbin", "/sbin"))
@@ -66,7 +66,7 @@ def missing() -> list[str]:
 
 
 def prepare(job: Path) -> None:
-    """Write what the kernel finds in its folder."""
+    """Write the files for the kernel's folder."""
     (job / "recipe.yaml").write_text(RECIPE.format(slip=SAMPLE_SLIPS), encoding="utf-8")
     settings = dict(LIMITS)
     for device, profile in PROFILES.items():
@@ -99,13 +99,13 @@ def boot(job: Path) -> None:
 
 
 def said(job: Path, name: str) -> str:
-    """Return what a file of the job holds, "" for one that there is not."""
+    """Return the contents of a file of the job, "" if it does not exist."""
     path = job / name
     return path.read_text(encoding="utf-8", errors="replace").strip() if path.exists() else ""
 
 
 def coefficient(job: Path, name: str) -> tuple[float, float]:
-    """Return a run's coefficient and its expanded uncertainty of this wheel; NaN where it has none."""
+    """Return a run's coefficient and its expanded uncertainty of this wheel; NaN if it has none."""
     for path in (job / name).glob("*/conditions.csv"):
         with path.open(encoding="utf-8-sig", newline="") as file:
             for row in csv.DictReader(file):
@@ -123,7 +123,7 @@ def _why(log: str) -> str:
 
 
 def figures(job: Path) -> Iterator[Figure]:
-    """Say what came of it."""
+    """Yield the figures."""
     failed = said(job, "failed") or ("" if said(job, "kernel") else f"no kernel: {_why(said(job, 'kernel.log'))}")
     yield holds("kernel with a vcan", not failed, failed or said(job, "kernel"), "boots")
     if failed:

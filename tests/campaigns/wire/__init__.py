@@ -1,1 +1,1 @@
-"""Spoiled frames on every wire: no value that a receiver could tell from a right one, and no exception."""
+"""Spoiled frames on every wire: no detectably wrong value is accepted, and no exception is raised."""

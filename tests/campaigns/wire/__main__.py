@@ -1,10 +1,10 @@
-"""`python -m tests.campaigns.wire [--sample] [--seed N] [--skip-run]`: is anything wrong taken for right on a wire?
+"""`python -m tests.campaigns.wire [--sample] [--seed N] [--skip-run]`: are wrong frames accepted on a wire?
 
 200,000 spoiled frames each of Modbus RTU, Modbus TCP through a gateway that cuts, merges, repeats and delays, and CAN
-(SDO answers and process data): no wrong value that a receiver could tell, no exception. Then the quickstart with
-replies held back by 16 ms, as a USB adapter's latency timer does: at least 40 readings of the load cell a second
-while it slides; and held back so long that the line has to be refused, with the setting named. Prints a line a figure;
-exit status 1 where one misses.
+(SDO answers and process data): no detectably wrong value is accepted, no exception. Then the quickstart with replies
+delayed by 16 ms, as by a USB adapter's latency timer: at least 40 readings of the load cell a second while it slides;
+and with a delay so long that the line must be refused, with the setting named. Prints a line a figure; exit status 1 if
+one misses.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ def figures(count: int, seed: int) -> Iterator[Figure]:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Measure what is asked for; return the exit status."""
+    """Measure the requested figures; return the exit status."""
     parser = argparse.ArgumentParser("python -m tests.campaigns.wire", description=(__doc__ or "").partition("\n")[2])
     parser.add_argument("--sample", action="store_true", help=f"{SAMPLE_FRAMES} frames a wire, and a short recipe")
     parser.add_argument("--seed", type=int, default=1, metavar="N", help="of the spoiling (default 1)")

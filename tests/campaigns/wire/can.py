@@ -1,5 +1,6 @@
-"""Spoiled SDO answers and TPDOs. A CAN controller checks every frame's bits: what is left are whole frames too many,
-too few, too short, of another transfer. An identifier with wrong bits is another frame, which nobody can tell."""
+"""Spoiled SDO answers and TPDOs. A CAN controller checks every frame's bits, so the remaining faults are whole frames:
+extra, missing, too short, or of another transfer. An identifier with wrong bits is another valid frame, which cannot be
+detected."""
 
 from __future__ import annotations
 
@@ -56,7 +57,7 @@ def _spoil(source: random.Random, kind: str, frame: bytes, first: bool) -> list[
 
 
 def sdo(source: random.Random, tally: Tally) -> None:
-    """Read an object whose answers are spoiled once, and compare what was read."""
+    """Read an object whose answers are spoiled once, and compare the value."""
     value = source.randbytes(source.choice((1, 2, 3, 4, 5, 7, 8, 14, 20, 40)))
     frames, kind = _server(value), source.choice(SPOILINGS)
     where = source.randrange(len(frames))
@@ -68,7 +69,7 @@ def sdo(source: random.Random, tally: Tally) -> None:
             now += ANSWER_S
             client.feed(one, now)
         if kind == "dropped" and number == where:
-            break  # the server waits to be asked again
+            break  # the server waits for the next request
     client.expire(now + 1.0)
     if client.busy:
         raise AssertionError(f"{kind}: the transfer has no end")
@@ -83,13 +84,13 @@ class ProcessData:
     """A drive whose TPDO1 come whole, short, long, twice or not at all."""
 
     def __init__(self) -> None:
-        """Begin with a drive that is connected."""
+        """Begin with a connected drive."""
         self.drive = joined(wheel())
         self.now = 0.0
         self.raw = 0
 
     def __call__(self, source: random.Random, tally: Tally) -> None:
-        """Send one, and compare the speed that is believed."""
+        """Send one, and compare the accepted speed."""
         self.now += 0.01
         raw = source.randint(-50_000, 50_000)
         frame = tpdo1(0x0240, raw, 0)

@@ -1,4 +1,4 @@
-"""Replies held back as a USB adapter's latency timer does, from outside: `tester run` and its bus log."""
+"""Replies delayed as by a USB adapter's latency timer, seen from outside: `tester run` and its bus log."""
 
 from __future__ import annotations
 
@@ -33,9 +33,8 @@ def _run(folder: Path, recipe: str, held_ms: int) -> subprocess.CompletedProcess
 
 
 def readings_hz(log: Path) -> float:
-    """Return the median number of readings in a second, of those in which the line was asked at the sliding rate.
-
-    Slower scans ask for 20 or 10 readings a second: what is above 25 is not theirs.
+    """Return the median number of readings in a second, over the seconds with requests at the sliding rate. Slower
+    scans request 20 or 10 readings a second: more than 25 come from sliding.
     """
     seconds: Counter[int] = Counter()
     for line in log.read_text(encoding="utf-8").splitlines():
@@ -47,7 +46,7 @@ def readings_hz(log: Path) -> float:
 
 
 def run(*, whole: bool) -> Iterator[Figure]:
-    """Yield what becomes of a run whose replies are held back."""
+    """Yield the figures of a run with delayed replies."""
     with TemporaryDirectory() as name:
         folder = Path(name)
         recipe = "quickstart"

@@ -1,4 +1,4 @@
-"""Spoiled replies of Modbus RTU and Modbus TCP; every reply carries registers of its own, so that a mix-up shows."""
+"""Spoiled replies of Modbus RTU and Modbus TCP; every reply has registers of its own, so that a mix-up shows."""
 
 from __future__ import annotations
 
@@ -19,14 +19,14 @@ COUNT: Final = 9
 UNIT: Final = 7
 TIMING: Final = Timing(turnaround_s=0.001, reply_max_s=0.008, retries=1)
 APART_S: Final = 1.0
-"""Between two transactions: whatever became of one, the next begins on a quiet line."""
+"""Time between two transactions: the next always begins on a quiet line."""
 STEP_S: Final = 0.05
 
 Chunks = list[tuple[float, bytes]]
 
 
 class Owner:
-    """Notes the last value."""
+    """Stores the last value."""
 
     def __init__(self) -> None:
         self.value: bytes | None = None
@@ -40,7 +40,7 @@ class Owner:
 
 
 class Line:
-    """Notes what is written; ``renew`` forgets what is still on its way."""
+    """Records writes; ``renew`` drops what is still in transit."""
 
     def __init__(self) -> None:
         self.sent = b""
@@ -64,7 +64,7 @@ class Wire:
     """A link and the line under it; a call is one transaction with a spoiled reply."""
 
     def __init__(self, framing: str, spoilings: dict[str, Callable[[random.Random, bytes, Line], Chunks]]) -> None:
-        """Ask one station of which the reply times are known."""
+        """Poll one station with known reply times."""
         self.link = ModbusLink(framing)  # type: ignore[arg-type]
         self.link.ear.hears_itself = False
         self.line, self.owner = Line(), Owner()
@@ -77,7 +77,7 @@ class Wire:
         self.now = 0.0
 
     def __call__(self, source: random.Random, tally: Tally) -> None:
-        """Ask, answer, spoil, and compare what was taken."""
+        """Request, answer, spoil, and compare the accepted value."""
         self._ask()
         data = source.randbytes(2 * COUNT)
         kind = source.choice([*self.spoilings])
@@ -96,7 +96,7 @@ class Wire:
                 tally.blame(f"{kind}: took {value.hex()} for {data.hex()} of {[c.hex() for _, c in chunks]}")
 
     def _ask(self) -> None:
-        """Let what is under way come to its end, and send the next request."""
+        """Let the current transaction end, and send the next request."""
         self.now += APART_S
         self.line.sent = b""
         for _ in range(60):
@@ -124,7 +124,7 @@ def _pieces(source: random.Random, data: bytes) -> Chunks:
 
 
 def _flipped(source: random.Random, data: bytes, line: Line) -> Chunks:
-    # Up to three wrong bits of a frame this short a CRC-16 always finds.
+    # A CRC-16 always detects up to three wrong bits in a frame this short.
     found = bytearray(data)
     for bit in source.sample(range(8 * len(data)), source.randint(1, 3)):
         found[bit // 8] ^= 1 << bit % 8
@@ -132,7 +132,7 @@ def _flipped(source: random.Random, data: bytes, line: Line) -> Chunks:
 
 
 def _burst(source: random.Random, data: bytes, line: Line) -> Chunks:
-    # And every burst of up to 16 bits.
+    # And any burst of up to 16 bits.
     length = source.randint(2, 16)
     at = source.randrange(8 * len(data) - length)
     pattern = (1 | 1 << (length - 1) | source.getrandbits(length)) << at
@@ -192,13 +192,13 @@ RTU: Final = {
 
 
 def _cut_and_on(source: random.Random, data: bytes, line: Line) -> Chunks:
-    """Send some of a reply; the rest never comes, and what is left over of earlier ones comes first."""
+    """Send part of a reply, after any remains of earlier ones; the rest never comes."""
     rest, line.rest = line.rest, b""
     return _at_once(rest + data[: source.randrange(len(data))])
 
 
 def _cut_and_later(source: random.Random, data: bytes, line: Line) -> Chunks:
-    """Send some of a reply; the rest comes before the next one, on the same connection."""
+    """Send part of a reply; the rest comes before the next one, on the same connection."""
     at = source.randint(1, len(data) - 1)
     line.rest = data[at:]
     return _at_once(data[:at])
@@ -220,7 +220,7 @@ def _cut_then_whole(source: random.Random, data: bytes, line: Line) -> Chunks:
 
 
 def _header(source: random.Random, data: bytes, line: Line) -> Chunks:
-    # TCP's own checksum guards bits on the way; a gateway's mistakes are in what says what a frame is.
+    # TCP's own checksum protects the bits in transit; a gateway's mistakes are in the frame's header.
     found = bytearray(data)
     at = source.randrange(9)
     found[at] ^= source.randint(1, 255)

@@ -1,4 +1,4 @@
-"""What became of spoiled frames, and how a wire is spoiled and counted."""
+"""The results of spoiled frames, and the loop that spoils and counts them."""
 
 from __future__ import annotations
 
@@ -20,10 +20,10 @@ class Tally:
     exceptions: int = 0
     kinds: Counter[str] = field(default_factory=Counter[str])
     first: str = ""
-    """The first thing that went wrong, to repeat it."""
+    """The first failure, to reproduce it."""
 
     def blame(self, what: str) -> None:
-        """Keep the first thing that went wrong."""
+        """Store the first failure."""
         self.first = self.first or what
 
 
@@ -34,7 +34,7 @@ def spoiled(name: str, wire: Callable[[random.Random, Tally], None], count: int,
         tally.frames += 1
         try:
             wire(source, tally)
-        except Exception as error:  # noqa: BLE001 - whatever it is, it is what the figure counts
+        except Exception as error:  # noqa: BLE001 - the figure counts any exception
             tally.exceptions += 1
             tally.blame(f"frame {tally.frames}: {type(error).__name__}: {error}")
     if tally.first:
@@ -42,5 +42,5 @@ def spoiled(name: str, wire: Callable[[random.Random, Tally], None], count: int,
     print(f"     {name}: {', '.join(f'{kind} {n}' for kind, n in sorted(tally.kinds.items()))}", flush=True)
     yield equal(f"{name}: wrong values of {tally.frames} spoiled frames", tally.wrong, 0)
     yield equal(f"{name}: exceptions", tally.exceptions, 0)
-    # Spoilings that leave the value whole (split, duplicated, late but in time) have to come through.
+    # Spoilings that preserve the value (split, duplicated, late but in time) must pass.
     yield at_least(f"{name}: values taken", tally.accepted, count // 50)
