@@ -1,1 +1,1 @@
-"""What the software costs: CPU time, memory and lateness, on the machine at hand. Run by ``python -m bench``."""
+"""Cost of the software: CPU time, memory and lateness, on this machine. Run by ``python -m bench``."""

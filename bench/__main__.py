@@ -1,4 +1,4 @@
-"""``python -m bench``: measures the software that is installed, where it is; ``--source``: this checkout's."""
+"""``python -m bench``: measures the installed software; ``--source``: this checkout's."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 if "--source" not in sys.argv:
-    # The checkout is searched last: an installation's scan is compiled, and what users run.
+    # The checkout is searched last: users run an installation, whose scan is compiled.
     root = Path(__file__).resolve().parent.parent
     sys.path[:] = [*(entry for entry in sys.path if Path(entry or ".").resolve() != root), str(root)]
 

@@ -48,7 +48,7 @@ def measure(effort: Effort) -> list[Figure]:
             Figure(f"{name}, {kind}: both", "s CPU", both, at_most(CHECK_LIMIT_S * share)),
             Figure(f"{name}, {kind}: steps, with wear and wheels", "s CPU", parts["steps"]),
         ]
-    # The start of the interpreter does not shrink with the recipe: a short measurement asks for nothing.
+    # The start of the interpreter does not shrink with the recipe: a short measurement has no limit.
     limit = None if effort.quick else at_most(PLAN_LIMIT_S)
     for option in ("", "--json"):
         figures += _command(option, size, effort.runs, limit)
@@ -56,7 +56,8 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def recipe_text(conditions: int) -> str:
-    """Return a recipe of that many conditions (a multiple of 2000): slips, loads and temperatures that a rig can do."""
+    """Return a recipe of that many conditions (a multiple of 2000): slips, loads and temperatures within a rig's
+    range."""
     slips = ", ".join(f"{50 + i} mm/s" for i in range(conditions // 2000))
     loads = ", ".join(f"{100 + i} N" for i in range(100))
     temperatures = ", ".join(f"{30 + 2 * i} degC" for i in range(20))
@@ -64,7 +65,7 @@ def recipe_text(conditions: int) -> str:
 
 
 def long_list_text(conditions: int) -> str:
-    """Return a recipe of that many conditions (a multiple of 5) most of which is one list of loads."""
+    """Return a recipe of that many conditions (a multiple of 5), mostly one list of loads."""
     slips = ", ".join(f"{50 + i} mm/s" for i in range(5))
     loads = ", ".join(f"{100 + i / 100} N" for i in range(conditions // 5))
     return _recipe(slips, loads, "40 degC")
@@ -89,14 +90,14 @@ grids:
 
 
 def work(text: str) -> dict[str, float]:
-    """Read, check and expand a recipe; return CPU seconds of each, and the conditions found."""
+    """Read, check and expand a recipe; return CPU seconds of each, and the number of conditions."""
     from tester.inputs.recipe.conditions import conditions_of
     from tester.inputs.recipe.loader import load_checked
     from tester.kinds import load_rig
     from tester.kinds.wheel_on_belt.recipe.expand import expand
 
     rig = load_rig("sim")
-    load_checked(recipe_text(2000), rig, PART, "few.yaml")  # the validator is made with the first recipe
+    load_checked(recipe_text(2000), rig, PART, "few.yaml")  # the first recipe creates the validator
     marks = [cpu_ns()]
     loaded = load_checked(text, rig, PART, "many.yaml")
     marks.append(cpu_ns())
@@ -109,7 +110,7 @@ def work(text: str) -> dict[str, float]:
 
 
 def _parts(kind: str, size: int, runs: int) -> dict[str, tuple[float, ...]]:
-    """Return what ``work`` measures, a value for each run."""
+    """Return the measurement of ``work``, one value per run."""
     found: list[dict[str, float]] = []
     for _ in range(runs):
         found.append(json.loads(run(["-m", "bench.big_recipe", kind, str(size)])))

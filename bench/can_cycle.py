@@ -16,7 +16,7 @@ from drivers.canopen.pdo import RPDO1_VELOCITY, TPDO1_VELOCITY
 from drivers.ports import CanFrame, FrameByFrame
 
 PDO_LIMIT = 0.2
-"""Asked of encoding and decoding process data, beside PyPI canopen."""
+"""Limit for encoding and decoding process data, beside PyPI canopen."""
 
 NODE = 5
 STATUSWORD = 0x1637
@@ -125,7 +125,7 @@ def canopen_pdo() -> Callable[[int], None] | None:
 
 
 class MemoryPort(FrameByFrame):
-    """A CAN port without a wire: the drives' answers wait when the computer asks."""
+    """A CAN port without a wire: the drives' answers are ready when the computer asks."""
 
     def __init__(self, answers: list[list[CanFrame]]) -> None:
         """Answer with these, in turn."""
@@ -198,7 +198,7 @@ def _compared(
 
 
 class _VirtualBus(FrameByFrame):
-    """python-can's bus in this process: what the computer sends is taken off it, what the drives answer put on it."""
+    """python-can's bus in this process: the computer's frames are read from it, the drives' answers written to it."""
 
     def __init__(self, answers: list[list[CanFrame]]) -> None:
         import can
@@ -220,12 +220,12 @@ class _VirtualBus(FrameByFrame):
         self.rig.shutdown()
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Send a frame, and take it off at the rig's end."""
+        """Send a frame, and receive it at the rig's end."""
         self.pc.send(self.message(arbitration_id=can_id, data=data, is_extended_id=False, check=False))
         self.rig.recv(0.0)
 
     def receive(self, now: float) -> list[CanFrame]:
-        """Let the drives answer, and take that in."""
+        """Let the drives answer, and receive the answers."""
         self.turn ^= 1
         found: list[CanFrame] = []
         for message in self.answers[self.turn]:

@@ -1,4 +1,4 @@
-"""Fresh interpreters: what they use of CPU and memory."""
+"""CPU time and memory of fresh interpreters."""
 
 from __future__ import annotations
 
@@ -11,12 +11,12 @@ from bench.effort import TopicFailedError
 from bench.machine import measures_installed
 
 ROOT = Path(__file__).resolve().parent.parent
-"""Where ``bench`` is imported from, and ``tester`` and ``sim`` where they are not installed."""
+"""Import path of ``bench``, and of ``tester`` and ``sim`` if they are not installed."""
 
 
 def command(arguments: Sequence[str]) -> list[str]:
-    """Return the command line of an interpreter whose ``-c`` code imports the ``tester`` that is measured here."""
-    # Without -P the folder it is started in, this checkout, comes before what is installed.
+    """Return the command line of an interpreter whose ``-c`` code imports the measured ``tester``."""
+    # Without -P the current folder, this checkout, precedes the installed packages.
     safe = ["-P"] if arguments[0] == "-c" and measures_installed() else []
     return [sys.executable, *safe, *arguments]
 
@@ -30,19 +30,19 @@ def run(arguments: Sequence[str], expected: int = 0) -> str:
 
 
 def cpu_accounting() -> bool:
-    """Tell whether this system accounts for the CPU time of children."""
+    """Return whether this system accounts for the CPU time of children."""
     return sys.platform != "win32"
 
 
 def cpu_seconds_of_child(arguments: Sequence[str]) -> float:
-    """Return the CPU seconds of a fresh interpreter, its start and its end included (POSIX)."""
+    """Return the CPU seconds of a fresh interpreter, including its start and end (POSIX)."""
     before = _children_s()
     run(arguments)
     return _children_s() - before
 
 
 def peak_memory_mb() -> float | None:
-    """Return the greatest memory this process ever occupied, MB (10^6 bytes); None where the system does not say."""
+    """Return the greatest memory this process ever occupied, MB (10^6 bytes); None if the system does not report it."""
     status = Path("/proc/self/status")
     if status.exists():
         for line in status.read_text(encoding="ascii").splitlines():

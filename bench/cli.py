@@ -19,7 +19,7 @@ COMPARING: dict[str, Callable[[Sequence[str]], int]] = {"ladder": ladder.main, "
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Measure, print, and return 1 where a figure misses what is asked, 2 for a wrong call, else 0."""
+    """Measure, print, and return 1 if a figure misses its limit, 2 for a wrong call, else 0."""
     words = sys.argv[1:] if arguments is None else arguments
     if words and words[0] in COMPARING:  # with an earlier commit: other options, no topic
         return COMPARING[words[0]](words[1:])
@@ -42,7 +42,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def measure_all(names: Sequence[str], effort: Effort, tell: Callable[[str], object]) -> dict[str, list[Figure]]:
-    """Return the figures of the topics; one that fails leaves a line that says why, and the others go on."""
+    """Return the figures of the topics; one that fails leaves a line with the reason, and the others continue."""
     results: dict[str, list[Figure]] = {}
     for name in names:
         tell(name)

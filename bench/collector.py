@@ -1,4 +1,4 @@
-"""Garbage collection while a run is ticked: pauses, and what nobody collects."""
+"""Garbage collection while a run is ticked: pauses, and uncollected objects."""
 
 from __future__ import annotations
 
@@ -15,16 +15,16 @@ PAUSE_LIMIT_MS = 1.0
 
 
 class Pauses:
-    """Notes every collection between the first and the last tick of a run, in ms."""
+    """Records every collection between the first and the last tick of a run, in ms."""
 
     def __init__(self) -> None:
-        """Note nothing before ``on`` is set."""
+        """Record nothing before ``on`` is set."""
         self.on = False
         self.ms: list[float] = []
         self._begun = 0
 
     def __call__(self, phase: str, info: dict[str, int]) -> None:
-        """Be called by the collector (``gc.callbacks``)."""
+        """Callback of the collector (``gc.callbacks``)."""
         if phase == "start":
             self._begun = wall_ns()
         elif self.on:
@@ -37,7 +37,7 @@ class WatchedRun:
     waiting = False
 
     def __init__(self, live: LiveRun, pauses: Pauses, seconds: float) -> None:
-        """Begin with a run that was not ticked yet."""
+        """Begin with a run that is not ticked yet."""
         self.live, self.pauses, self.seconds = live, pauses, seconds
         self.finished = False
         self.objects = 0
@@ -81,7 +81,7 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def _work(effort: Effort) -> tuple[str, float]:
-    """Return a recipe and how long it is run, rig s."""
+    """Return a recipe and its duration, rig s."""
     if effort.quick:
         return SLIDING_RECIPE, 300.0
     return find("quickstart").read_text(encoding="utf-8"), 1e9

@@ -1,4 +1,4 @@
-"""How much is measured."""
+"""The amount of measurement."""
 
 from __future__ import annotations
 
@@ -9,16 +9,16 @@ T = TypeVar("T")
 
 
 class TopicFailedError(Exception):
-    """A topic has nothing to measure: what it runs did not do what it should. The message says so."""
+    """A topic has nothing to measure, because its run failed; the message gives the reason."""
 
 
 @dataclass(frozen=True, slots=True)
 class Effort:
-    """``runs`` of every figure; ``quick``: shorter ones, for a look."""
+    """``runs`` of every figure; ``quick``: shorter ones, for a first look."""
 
     runs: int = 3
     quick: bool = False
 
     def pick(self, full: T, quick: T) -> T:
-        """Return the one that is meant."""
+        """Return the value for this effort."""
         return quick if self.quick else full

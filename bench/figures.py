@@ -1,4 +1,4 @@
-"""A figure with the runs it comes from, what is asked of it, and whether it holds."""
+"""A figure with its runs, its limit, and its verdict."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Literal
 
 
 class Verdict(Enum):
-    """What becomes of a figure."""
+    """The verdict on a figure."""
 
     SHOWN = ""
     HOLDS = "ok"
@@ -21,14 +21,14 @@ class Verdict(Enum):
 
 @dataclass(frozen=True, slots=True)
 class Limit:
-    """What is asked: a bound on the median of the runs, or on the worst of them."""
+    """A limit: a bound on the median of the runs, or on the worst of them."""
 
     kind: Literal["at most", "at least"]
     value: float
     worst: bool = False
 
     def holds(self, figure: Figure) -> bool:
-        """Tell whether the figure keeps to the bound; no number keeps to none."""
+        """Return whether the figure keeps the bound; a missing number does not."""
         if self.kind == "at most":
             return (figure.greatest if self.worst else figure.median) <= self.value
         return (figure.least if self.worst else figure.median) >= self.value
@@ -39,18 +39,18 @@ class Limit:
 
 
 def at_most(value: float, *, worst: bool = False) -> Limit:
-    """Ask for a median (or the worst run) of at most ``value``."""
+    """Limit the median (or the worst run) to at most ``value``."""
     return Limit("at most", value, worst)
 
 
 def at_least(value: float, *, worst: bool = False) -> Limit:
-    """Ask for a median (or the worst run) of at least ``value``."""
+    """Limit the median (or the worst run) to at least ``value``."""
     return Limit("at least", value, worst)
 
 
 @dataclass(frozen=True, slots=True)
 class Figure:
-    """One line of the table: a value for each run. Without a run it is not available here, or ``failed``."""
+    """One line of the table: a value for each run. Without runs it is not available here, or ``failed``."""
 
     name: str
     unit: str
@@ -61,7 +61,7 @@ class Figure:
 
     @property
     def median(self) -> float:
-        """The middle of the runs."""
+        """The median of the runs."""
         return median(self.runs)
 
     @property
@@ -76,7 +76,7 @@ class Figure:
 
     @property
     def verdict(self) -> Verdict:
-        """Whether what is asked holds."""
+        """Whether the figure keeps its limit."""
         if self.failed:
             return Verdict.FAILED
         if not self.runs:
@@ -87,17 +87,17 @@ class Figure:
 
     @property
     def missed(self) -> bool:
-        """It was measured and is not good enough, or could not be measured although it should."""
+        """It misses its limit, or could not be measured although it should."""
         return self.verdict in (Verdict.MISSED, Verdict.FAILED)
 
 
 def unavailable(name: str, unit: str, why: str) -> Figure:
-    """Return the line of a figure that this machine or installation cannot give."""
+    """Return the line of a figure that is unavailable on this machine or installation."""
     return Figure(name, unit, (), note=why)
 
 
 def ratio(name: str, above: Sequence[float], below: Sequence[float], limit: Limit | None = None) -> Figure:
-    """Return run for run one figure over another: what a busy machine does to both cancels."""
+    """Return the ratio of two figures run by run: the effects of a busy machine on both cancel."""
     return Figure(name, "x", tuple(a / b for a, b in zip(above, below, strict=True)), limit)
 
 

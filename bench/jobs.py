@@ -16,17 +16,16 @@ from recipes import find
 
 SPECIMENS = 4
 RATIO_LIMIT = 1.7
-"""Asked of two jobs on four equal specimens: wall time of one job over that of two."""
+"""Limit for two jobs on four equal specimens: wall time of one job over that of two."""
 RATIO = "one job over two jobs"
 COMMAND = "import sys; from tester.cli.main import invoke; sys.exit(0 if invoke() in (0, 6) else 1)"
-"""Also where a condition has no value every specimen has come to its end."""
+"""Every specimen ended, even if a condition has no value."""
 TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
 
 def measure(effort: Effort) -> list[Figure]:
-    """Return both wall times and, run for run, their ratio.
-
-    It is for an idle machine: one that has other work for its CPUs takes from two jobs what it leaves to one.
+    """Return both wall times and, run by run, their ratio. For an idle machine only: other work on its CPUs slows two
+    jobs more than one.
     """
     if usable_cpus() < 2:
         return [unavailable(RATIO, "x", "a single CPU")]
@@ -50,7 +49,7 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def four_specimens(shortened: bool) -> str:
-    """Return a longer quickstart with its specimen four times; ``shortened``: less to measure."""
+    """Return a longer quickstart with its specimen four times; ``shortened``: fewer measurements."""
     recipe = yaml.safe_load(find("quickstart").read_text(encoding="utf-8"))
     recipe["specimens"] = [dict(recipe["specimens"][0]) for _ in range(SPECIMENS)]
     recipe["grids"][0]["load"] = ["100 N", "200 N", "300 N", "400 N"]
@@ -64,7 +63,7 @@ def four_specimens(shortened: bool) -> str:
 
 
 def wall_s(folder: Path, jobs: int, number: int) -> float:
-    """Run the recipe with so many jobs and return the wall time in s, start of the interpreter included."""
+    """Run the recipe with so many jobs and return the wall time in s, including the start of the interpreter."""
     out = folder / f"{jobs}-{number}"
     begun = wall_ns()
     arguments = ["--yes", "--seed", "1", "--jobs", str(jobs), "--out", str(out)]
@@ -73,6 +72,6 @@ def wall_s(folder: Path, jobs: int, number: int) -> float:
 
 
 def tables(folder: Path, jobs: int, number: int) -> list[bytes]:
-    """Return the tables of a run that was measured."""
+    """Return the tables of a measured run."""
     (run_folder,) = (folder / f"{jobs}-{number}").iterdir()
     return [(run_folder / name).read_bytes() for name in TABLES]

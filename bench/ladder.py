@@ -1,15 +1,15 @@
-"""``python -m bench ladder --against COMMIT``: how fast this tree is beside an earlier one, in turns.
+"""``python -m bench ladder --against COMMIT``: speed of this tree against an earlier one, in turns.
 
     python -m bench ladder --against COMMIT                  # plain and compiled, five rounds: half an hour
     python -m bench ladder --against COMMIT --plain --quick  # four rounds of short recipes: what CI runs
 
-Both trees go into folders of their own: the sources, and, compiled, what pip installs of them. Each then runs the same
+Both trees go into folders of their own: the sources, and, compiled, the result of pip install. Each then runs the same
 recipes with the same seed by ``tester run``, in turns, with the packages of this interpreter. A ratio is the CPU time
-of COMMIT divided by that of this tree, so above 1 is faster; its interval holds the mean of the rounds' ratios with
-95 % (Student's t of their logarithms). The recipes are whole tests, and tests that spend nearly all of their time in
-one kind of tick: 100 Hz (sliding), 20 Hz (heated, turning), 10 Hz (at rest). A ratio whose interval lies wholly below
-``SLIP`` is a miss, and the exit code is 1; nothing is tried again. The parts of a scan, from a profile of the first
-recipe, are printed for information (plain only).
+of COMMIT divided by that of this tree, so above 1 is faster; its interval holds the mean of the rounds' ratios with 95
+% (Student's t of their logarithms). The recipes are whole tests, and tests that spend nearly all their time in one kind
+of tick: 100 Hz (sliding), 20 Hz (heated, turning), 10 Hz (at rest). A ratio whose interval lies wholly below ``SLIP``
+is a miss, and the exit code is 1; there are no retries. The parts of a scan, from a profile of the first recipe, are
+printed for information (plain only).
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ import yaml
 from bench.versions import Trees, in_turns, measured_on, parser_of, versions
 
 SLIP = 0.97
-"""Least ratio that the interval has to reach."""
+"""Minimum ratio that the interval must reach."""
 ROUNDS, QUICK_ROUNDS = 5, 4
 STUDENT = {2: 12.706, 3: 4.303, 4: 3.182, 5: 2.776, 6: 2.571, 7: 2.447, 8: 2.365, 9: 2.306, 10: 2.262}
 """97.5 % quantile of Student's t by the number of rounds."""
@@ -44,7 +44,7 @@ BASE: dict[str, Any] = {
     },
     "grids": [{"name": "one", "slip_velocity": "300 mm/s", "load": "200 N", "temperature": "40 degC"}],
 }
-"""One condition; every recipe below changes some of its keys, in words that each version has understood."""
+"""One condition; every recipe below changes some of its keys, in words that each version understands."""
 
 
 class Recipe(NamedTuple):
@@ -99,7 +99,7 @@ def recipes() -> Iterator[Recipe]:
 
 
 def turning_s(seconds: int) -> Changes:
-    """Return how long a heated wheel turns before it is measured."""
+    """Return how long a heated wheel turns before its measurement."""
     return {"soak": {"within": "1 degC", "for": f"{seconds} s"}}
 
 
@@ -112,7 +112,7 @@ def written(name: str, keys: Changes, measure: Changes, grid: Changes, quick: bo
 def climb(
     trees: Trees, chosen: Sequence[Recipe], rounds: int, folder: Path, show: Callable[[str], object]
 ) -> int:
-    """Run the recipes on both trees in turns, show a line for each, and return how many miss."""
+    """Run the recipes on both trees in turns, show a line for each, and return the number of misses."""
     misses = 0
     for recipe in chosen:
         times = [[cost.cpu_s for cost in costs] for costs in in_turns(trees, recipe.text, rounds, folder)]
@@ -139,7 +139,7 @@ def show_parts(trees: Trees, recipe: Recipe, folder: Path, show: Callable[[str],
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Measure and print; return 1 where a ratio misses."""
+    """Measure and print; return 1 if a ratio misses."""
     parser = parser_of("ladder", "Speed beside an earlier commit.")
     parser.add_argument("--rounds", type=int, choices=sorted(STUDENT), help="rounds of every recipe (default 5)")
     options = parser.parse_args(arguments)

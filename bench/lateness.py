@@ -1,8 +1,8 @@
-"""Real time: how late ticks are beside a bare absolute-deadline loop, with and without a busy core beside them.
+"""Real time: lateness of ticks beside a bare absolute-deadline loop, with and without a busy core.
 
-Both loops have real-time priority where it is granted, as a run on a machine has: others on this computer do not decide
-the figures then. The rig slides (the rate of that state is 100 Hz). "1 kHz" is the tick with SYNC and polls every
-10th: wires and drivers are served every millisecond, a scan follows every 10 ms.
+Both loops have real-time priority where it is granted, like a run on a machine, so that other processes on this
+computer do not determine the figures. The rig slides (the rate of that state is 100 Hz). "1 kHz" is the tick with SYNC
+and polls every 10th: wires and drivers are served every millisecond, a scan follows every 10 ms.
 """
 
 from __future__ import annotations
@@ -25,7 +25,7 @@ from tester.machine.tickers import TickStatistics, collector_at_rest, run_real_t
 
 
 class Rate(NamedTuple):
-    """A rate with what is asked at it: CPU share of a core in % at most; ``every_tick``: none is missed."""
+    """A rate with its limits: maximum CPU share of a core in %; ``every_tick``: no tick is missed."""
 
     name: str
     period_s: float
@@ -34,9 +34,10 @@ class Rate(NamedTuple):
 
 
 RATES = (Rate("100 Hz", 0.01, 3.0, True), Rate("1 kHz", 0.001, 15.0, False))
-"""At 1 kHz the bare loop misses ticks too, on a machine without real-time scheduling: there the ratio is asked."""
+"""At 1 kHz the bare loop also misses ticks on a machine without real-time scheduling: there the limit is on the
+ratio."""
 LATENESS_LIMIT = 2.0
-"""Asked of the 99th percentile beside the bare loop's."""
+"""Limit of the 99th percentile relative to the bare loop's."""
 
 _TINY_S = 1e-6
 
@@ -45,18 +46,18 @@ SPIN = "while True: pass"
 
 @dataclass(slots=True)
 class Punctuality:
-    """What one stretch of real time gave."""
+    """The result of one stretch of real time."""
 
     late_s: list[float] = field(default_factory=list[float])
     missed: int = 0
     cpu_share: float = 0.0
     seconds: float = 0.0
     tripped: str = ""
-    """Why the rig stopped before the end: late scans make data stale."""
+    """Why the rig stopped early: late scans make data stale."""
 
     @property
     def p99_us(self) -> float:
-        """Lateness that 99 of 100 ticks keep, in us."""
+        """99th percentile of the lateness, in us."""
         return percentile(self.late_s, 0.99) * 1e6
 
 
@@ -69,9 +70,9 @@ class Columns:
 
 
 class RealTimeRig:
-    """A live run as the real-time ticker drives it: shifted to begin at 0, ending after a while, every tick noted.
+    """A live run as the real-time ticker drives it: shifted to begin at 0, ending after a while, every tick recorded.
 
-    Stands for both sides of ``run_real_time``: what is ticked and the simulated rig. ``period_s``: the longest time
+    Implements both sides of ``run_real_time``: the ticked object and the simulated rig. ``period_s``: the longest time
     between two ticks.
     """
 
@@ -90,7 +91,7 @@ class RealTimeRig:
 
     @property
     def urgent_s(self) -> float:
-        """When something arrives that the scan should not wait for."""
+        """Arrival time of urgent data, to be processed before the next scan."""
         return self.live.world.urgent_s - self._origin
 
     def advance(self, now: float) -> None:
@@ -98,7 +99,7 @@ class RealTimeRig:
         self.live.world.advance(now + self._origin)
 
     def tick(self, now: float) -> float:
-        """Tick, note how late that was, and return when the next is due."""
+        """Tick, record the lateness, and return when the next tick is due."""
         live, origin, found = self.live, self._origin, self.found
         if not found.late_s:
             self._used = cpu_ns()
@@ -110,7 +111,7 @@ class RealTimeRig:
         live.now = now + origin
         if now >= self.seconds or live.engine.control.state.trip is not None:
             self._end(now)
-        # Counted from this tick: on a grid of its own the scans' own rate would take two ticks a period.
+        # Counted from this tick: on a separate grid each period of the scans would take two ticks.
         following = min(wanted, max(due + self.period_s, now) + _TINY_S)
         self._due = min(following, self.urgent_s)
         return following
@@ -125,15 +126,15 @@ class RealTimeRig:
 
 
 class Rigs:
-    """A sliding rig whenever one is asked for; one that tripped is replaced."""
+    """Provides a sliding rig; replaces one that tripped."""
 
     def __init__(self) -> None:
-        """Build none yet."""
+        """No rig yet."""
         self._stack = ExitStack()
         self._live: LiveRun | None = None
 
     def sliding(self, seconds: float) -> LiveRun:
-        """Return a rig whose wheel slides for ``seconds`` more."""
+        """Return a rig whose wheel slides for another ``seconds``."""
         live = self._live
         if live is None or live.engine.control.state.trip is not None:
             self.close()
@@ -142,7 +143,7 @@ class Rigs:
         return live
 
     def close(self) -> None:
-        """Let go of the rig."""
+        """Release the rig."""
         self._stack.close()
 
 
@@ -163,7 +164,7 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def bare_loop(seconds: float, period_s: float) -> Punctuality:
-    """Wait for absolute deadlines and do nothing else."""
+    """Only wait for absolute deadlines."""
     found = Punctuality()
     with collector_at_rest(), closing(RealTimePriority()):
         used = cpu_ns()
@@ -181,7 +182,7 @@ def bare_loop(seconds: float, period_s: float) -> Punctuality:
 def rig_loop(live: LiveRun, seconds: float, period_s: float) -> Punctuality:
     """Let the real-time ticker drive a sliding rig."""
     rig = RealTimeRig(live, seconds, period_s)
-    # The collector already here: the ticker's own collection would make the first tick late.
+    # Collect garbage here: the ticker's own collection would make the first tick late.
     with collector_at_rest(), closing(RealTimePriority()):
         run_real_time(rig, rig, poll=_no_poll, statistics=TickStatistics())
     if live.run.finished or not (live.sliding or rig.found.tripped):
@@ -201,7 +202,7 @@ def busy_core() -> Generator[None, None, None]:
 
 
 def percentile(values: Sequence[float], share: float) -> float:
-    """Return the smallest value that ``share`` of all do not exceed."""
+    """Return the smallest value that ``share`` of all values do not exceed."""
     ordered = sorted(values)
     return ordered[max(0, ceil(share * len(ordered)) - 1)]
 

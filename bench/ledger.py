@@ -1,4 +1,4 @@
-"""Time by part: whoever runs is charged until another part takes over."""
+"""Time by part: the running part is charged until another takes over."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ PARTS = (
     "engine",
     "recorder",
 )
-"""What a scan's time is split into; what stands before a colon is a group."""
+"""Parts of a scan's time; the text before a colon is a group."""
 
 _OUTSIDE = len(PARTS)
 _TRIALS = 2000
@@ -33,12 +33,12 @@ _ROUNDS = 25
 
 
 class Ledger:
-    """Own time in ns of every part, and how many wrapped calls it took and made, since the last ``take``."""
+    """Own time in ns of every part, and the number of wrapped calls to and from it, since the last ``take``."""
 
     __slots__ = ("called", "calls", "inner_ns", "mark", "outer_ns", "part", "times")
 
     def __init__(self) -> None:
-        """Learn what measuring costs on this machine."""
+        """Determine the cost of measuring on this machine."""
         self.inner_ns = self.outer_ns = 0.0
         self._reset()
         self._calibrate()
@@ -74,7 +74,7 @@ class Ledger:
         return measured
 
     def take(self) -> tuple[float, ...]:
-        """Return the us of every part since the last call, less what measuring took, and begin anew."""
+        """Return the us of every part since the last call, without the cost of measuring, and reset."""
         inner, outer = self.inner_ns, self.outer_ns
         found = tuple(
             max(0.0, t - inner * called - outer * calls) * 1e-3
@@ -86,7 +86,7 @@ class Ledger:
         return found
 
     def _calibrate(self) -> None:
-        """Wrap a function that does nothing: what is charged beyond the bare call is the wrapper's."""
+        """Wrap a function that does nothing: the charge beyond the bare call is the wrapper's."""
         caller, callee = PARTS.index("engine"), PARTS.index("plant")
 
         def nothing(one: object, two: object) -> None:

@@ -1,4 +1,4 @@
-"""A run on the simulated rig with everything on, which a measurement ticks itself: to a phase, then through it."""
+"""A run on the simulated rig with everything on, ticked by the measurement: to a phase, then through it."""
 
 from __future__ import annotations
 
@@ -73,13 +73,13 @@ class LiveRun:
 
     @property
     def sliding(self) -> bool:
-        """The wheel slides under load, at the rate of that state."""
+        """Whether the wheel slides under load, at the rate of that state."""
         ctx = self.engine.ctx
         readings = ctx.readings
         return ctx.moving and readings.force_z_n > _CONTACT_N and readings.slip_m_s > _SLIDING_M_S
 
     def tick(self) -> None:
-        """Do what the simulated ticker does in one turn (``tester.machine.tickers.run_simulated``)."""
+        """Do one turn of the simulated ticker (``tester.machine.tickers.run_simulated``)."""
         now = self.now
         self.ticks += 1
         self.world.advance(now)
@@ -90,7 +90,7 @@ class LiveRun:
         self.now = later
 
     def until(self, reached: Callable[[], bool]) -> None:
-        """Tick until something is so; raises TopicFailedError where the run ends before."""
+        """Tick until a condition is true; raises TopicFailedError if the run ends first."""
         give_up = self.now + _PATIENCE_S
         while not reached():
             if self.run.finished or self.now > give_up:
@@ -98,7 +98,7 @@ class LiveRun:
             self.tick()
 
     def slide(self, seconds: float) -> None:
-        """Tick to a slip pulse that goes on for ``seconds`` (at most 300) more."""
+        """Tick to a slip pulse that lasts another ``seconds`` (at most 300)."""
         self.until(lambda: self.sliding)
         ctx = self.engine.ctx
         pulse = (ctx.repeat_key, ctx.burst)
@@ -120,13 +120,13 @@ class LiveRun:
             raise TopicFailedError(f"the run ended while it was measured: {run.outcome.value} {run.reason}")
 
     def close(self) -> None:
-        """Let go of the store."""
+        """Release the store."""
         self.writer.close()
 
 
 @contextmanager
 def live_run(text: str, seed: int = 1) -> Generator[LiveRun, None, None]:
-    """Give a run in a folder that is removed at the end."""
+    """Yield a run in a folder that is removed at the end."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         live = LiveRun(text, Path(folder), seed)
         try:

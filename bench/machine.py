@@ -1,4 +1,4 @@
-"""What the figures were measured on."""
+"""The machine of the figures."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from pathlib import Path
 
 
 def built_with_pgo() -> str:
-    """Return "yes" or "no": was the interpreter's build guided by a profile; "unknown" where it does not say."""
+    """Return "yes" or "no": was the interpreter's build guided by a profile; "unknown" if it does not state this."""
     arguments: object = sysconfig.get_config_var("CONFIG_ARGS")
     flags: object = sysconfig.get_config_var("PY_CORE_CFLAGS") or ""
     if not isinstance(arguments, str):
@@ -28,21 +28,21 @@ def scan_is_compiled() -> str:
 
 
 def measures_installed() -> bool:
-    """Tell whether ``tester`` is imported from where it is installed, and not from beside this package."""
+    """Return whether ``tester`` is imported from an installation, not from beside this package."""
     found = importlib.util.find_spec("tester")
     places = found.submodule_search_locations if found is not None else None
     return all(Path(place).resolve().parent != Path(__file__).resolve().parent.parent for place in places or ())
 
 
 def usable_cpus() -> int:
-    """Return how many CPUs this process may use."""
+    """Return the number of CPUs that this process may use."""
     if sys.platform == "linux":
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1
 
 
 def machine() -> dict[str, str | int]:
-    """Return interpreter, build, CPUs and system, as the report shows them."""
+    """Return interpreter, build, CPUs and system, as in the report."""
     return {
         "interpreter": f"{platform.python_implementation()} {platform.python_version()}",
         "pgo": built_with_pgo(),

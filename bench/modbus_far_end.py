@@ -1,6 +1,6 @@
 """The far end of the pseudo-terminal, a process of its own: a simulated load cell that answers as fast as it can.
 
-Run as ``python -m bench.modbus_far_end DESCRIPTOR``; it ends with its parent's kill.
+Run as ``python -m bench.modbus_far_end DESCRIPTOR``; its parent kills it.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ READY = b"R"
 
 
 class Forces:
-    """What the cell measures: always the same."""
+    """The cell's constant readings."""
 
     def forces_measured(self, t: float) -> tuple[float, float, float, float]:
         """Return Fx, Fy, Fz in N and the moment in N m."""
@@ -27,7 +27,7 @@ class Forces:
 
 
 def serve(descriptor: int) -> None:
-    """Answer requests; the reply to one that was asked before comes from memory."""
+    """Answer requests; the reply to a repeated request comes from memory."""
     slave = CellSlave(load_profile(PROFILE), UNIT_ID, Forces())
     known: dict[bytes, bytes] = {}
     buffer = b""

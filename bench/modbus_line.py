@@ -1,9 +1,9 @@
 """One Modbus transaction on a pseudo-terminal: raw bytes, our driver, pymodbus' and minimalmodbus' clients.
 
 The far end is a process of its own that answers from memory, and both are pinned to one core, so that a transaction is
-the work of both and no wake-up of another core. A round trip is the median of many, in elapsed time; beside it stands
-this process's own CPU time. The time handed to our driver runs faster than the clock, so that the silence between two
-frames costs nothing; the libraries wait for it in earnest, which is why their CPU time is compared.
+the work of both, without waking another core. A round trip is the median of many, in elapsed time; this process's own
+CPU time is listed beside it. Our driver's time runs faster than the clock, so that the silence between two frames costs
+nothing; the libraries really wait for it, so their CPU time is compared.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ from drivers.sensor import Sensor
 from drivers.transports.serial_line import open_serial_line
 
 LIMIT = 3.0
-"""Asked of a transaction through our driver beside the raw one."""
+"""Limit of a transaction through our driver relative to the raw one."""
 BAUD = 115200
 REGISTERS = 9
 REPLY_BYTES = 5 + 2 * REGISTERS
@@ -110,7 +110,7 @@ def _timed(transact: Transact, count: int) -> tuple[float, float]:
 
 @contextmanager
 def one_core() -> Generator[bool, None, None]:
-    """Keep this process and its children on one core, where the system allows it; give whether it does."""
+    """Keep this process and its children on one core if the system allows it; yield whether it does."""
     if sys.platform != "linux":
         yield False
         return
@@ -124,7 +124,7 @@ def one_core() -> Generator[bool, None, None]:
 
 @contextmanager
 def far_end() -> Generator[str, None, None]:
-    """Start the far end of a pseudo-terminal; give the name of the near one."""
+    """Start the far end of a pseudo-terminal; yield the name of the near one."""
     import tty
 
     master, near = os.openpty()
@@ -147,7 +147,7 @@ def far_end() -> Generator[str, None, None]:
 
 
 def _raw(terminal: str) -> tuple[Transact, Callable[[], None]]:
-    """Ask with the bytes that our driver sends, and take as many as the answer has."""
+    """Send our driver's request bytes, and read as many bytes as the answer has."""
     port = os.open(terminal, os.O_RDWR | os.O_NOCTTY)
     request = with_crc(bytes((UNIT_ID, 3, 0, 0, 0, REGISTERS)))
 
@@ -161,7 +161,7 @@ def _raw(terminal: str) -> tuple[Transact, Callable[[], None]]:
 
 
 def _ours(terminal: str) -> tuple[Transact, Callable[[], None]]:
-    """Ask through link, load cell and serial port; what arrives is waited for with ``select``."""
+    """Ask through link, load cell and serial port; waits for the answer with ``select``."""
     from select import select
 
     line = open_serial_line(terminal, BAUD)

@@ -1,8 +1,8 @@
-"""What the compiled modules bring and what they cost: shares of a plain scan's CPU time, and the C they become.
+"""Benefit and cost of the compiled modules: shares of a plain scan's CPU time, and the size of their C.
 
-A share is a file's own time, by a profile of a whole run, without what it calls in other files; its base is the time in
-the Python of this project. Profiles slow calls down and miss what reading an object's fields costs, so a share is good
-for a choice and for no more. The C is counted where mypyc is installed.
+A share is a file's own time in a profile of a whole run, without its calls into other files; its base is the time in
+the Python of this project. Profiles slow calls down and miss the cost of reading an object's fields, so a share only
+serves to choose modules. The C is counted if mypyc is installed.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from compiling.modules import HOT, PAYING, THRESHOLD
 RECIPES = {"quickstart": ("--seed", "0"), "pin-on-disc": ("--seed", "0", "--rig", "pin-on-disc")}
 """A run of each kind of machine: a wheel at all rates of the scan, a specimen on a track with its prompts and waits."""
 COMPILED_AT_LEAST = 90.0
-"""Asked of the compiled modules together, % of a scan's Python."""
+"""Limit for the compiled modules together, % of a scan's Python."""
 PACKAGES = ("drivers/", "sim/", "tester/")
 
 Shares = Mapping[str, float]
@@ -64,7 +64,7 @@ def together(recipe: str, runs: Sequence[Shares]) -> Figure:
 
 
 def folders(runs: Sequence[Mapping[str, Shares]], kilobytes: Mapping[str, float]) -> list[Figure]:
-    """Return the compiled share of every folder, the greatest of the recipes, with what is compiled of it."""
+    """Return the compiled share of every folder, the greatest of the recipes, with its number of compiled modules."""
     names = {file: file.rpartition("/")[0] for file in HOT}
     figures: list[Figure] = []
     for folder, count in Counter(names.values()).items():
@@ -77,7 +77,8 @@ def folders(runs: Sequence[Mapping[str, Shares]], kilobytes: Mapping[str, float]
 
 
 def astray(runs: Sequence[Shares], *, partial: bool) -> list[Figure]:
-    """Return how many modules are on the wrong side of the threshold, by a factor of two; ``partial``: for a look."""
+    """Return how many modules are on the wrong side of the threshold, by a factor of two; ``partial``: for a first
+    look."""
 
     def line(name: str, wrong: Sequence[Sequence[str]], asked: bool) -> Figure:
         limit = at_most(0.0) if asked and not partial else None

@@ -1,16 +1,17 @@
-"""``python -m bench promises --against COMMIT``: what this tree was to gain over that commit, and whether it does.
+"""``python -m bench promises --against COMMIT``: the promised gains of this tree over that commit, and whether it keeps
+them.
 
     python -m bench promises --against 45113df                       # all, plain and compiled, five rounds: hours
     python -m bench promises --against 45113df --compiled table2     # one of them
     python -m bench promises --against 45113df --quick --keep FOLDER  # less of each, compiled copies used again
 
-Both versions run the recipes of COMMIT with the same seed in turns, each as ``tester run`` in its own process. What
-is compared is the CPU time of all processes of a run; with ``--wall`` Table 2 is judged by its wall time, for a machine
-that has nothing else to do. A figure is the median of the rounds, and a table shows the least and the greatest beside
-it. Where the two versions need different rig seconds for a recipe, the ratio for equal rig seconds is there, too.
+Both versions run the recipes of COMMIT with the same seed in turns, each as ``tester run`` in its own process. The CPU
+time of all processes of a run is compared; with ``--wall`` Table 2 is judged by its wall time, on an idle machine. A
+figure is the median of the rounds, and a table also shows the least and the greatest. If the two versions need
+different rig seconds for a recipe, the table also gives the ratio for equal rig seconds.
 
 ``--skeleton FOLDER`` holds ``rig.py``, a rig without interlocks and store (class ``Supervisor``), that runs between the
-rounds: how a version compares with it depends on the machine, but hardly on what else this machine does.
+rounds: a version's ratio to it depends on the machine, but hardly on the machine's other work.
 """
 
 from __future__ import annotations
@@ -31,7 +32,7 @@ from bench.versions import Cost, Trees, build_of, in_turns, measured_on, parser_
 ROUNDS, QUICK_ROUNDS = 5, 3
 JOBS = 2
 BUILD_S = 60.0
-"""Asked of a build on two idle cores."""
+"""Limit of a build on two idle cores."""
 SKELETON_S = 600.0
 SKELETON = """
 import sys
@@ -47,7 +48,7 @@ print(process_time() - begun)
 
 
 class Asked(NamedTuple):
-    """What is asked of one kind of installation, beside the same kind of the earlier version."""
+    """Limits of one kind of installation, relative to the same kind of the earlier version."""
 
     conditions: float
     """Least ratio of CPU times, COMMIT over this tree, of whole conditions ..."""
@@ -65,7 +66,7 @@ ASKED = {"plain": Asked(2.5, 1.7, 2.2, 0.4), "compiled": Asked(3.0, 1.8, 2.7, 0.
 
 
 class Extent(NamedTuple):
-    """How much is measured, and where."""
+    """The extent of the measurement, and its folders."""
 
     rounds: int
     quick: bool
@@ -75,14 +76,15 @@ class Extent(NamedTuple):
 
 
 def conditions(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
-    """Return how whole conditions compare."""
+    """Return the comparison of whole conditions."""
     recipe = next(recipe for recipe in recipes() if recipe.quick is extent.quick)
     costs = in_turns(trees, recipe.text, extent.rounds, extent.folder)
     return faster(recipe.name, trees, costs, asked.conditions)
 
 
 def flat(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
-    """Return how a run compares that slides nearly all of its time, scanned at 100 Hz, and both with the skeleton."""
+    """Return the comparison of a run that slides nearly all the time, scanned at 100 Hz, and of both versions with the
+    skeleton."""
     (recipe,) = (one for one in recipes() if one.quick is extent.quick and one.name.startswith("100 Hz"))
     source = extent.skeleton
     speeds: list[float] = []
@@ -97,7 +99,7 @@ def flat(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
 
 
 def table2(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
-    """Return how Table 2 compares in two jobs, by its time and by its memory."""
+    """Return the comparison of Table 2 in two jobs, by time and by memory."""
     text = table2_text(trees[0].folder, extent.quick)
     costs = in_turns(trees, text, extent.rounds, extent.folder, "--jobs", str(JOBS))
     name = f"Table 2, {JOBS} jobs" + (", a temperature of two compounds" if extent.quick else "")
@@ -111,7 +113,7 @@ def table2(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
 
 
 def grosch(trees: Trees, asked: Asked, extent: Extent) -> list[Figure]:
-    """Return how a master curve compares; most of its rig time passes while the chamber settles."""
+    """Return the comparison of a master curve; most of its rig time passes while the chamber settles."""
     text = grosch_text(trees[0].folder, extent.quick)
     costs = in_turns(trees, text, extent.rounds, extent.folder, "--rig", "grosch")
     name = "grosch" + (", two temperatures, seven speeds" if extent.quick else "")
@@ -150,7 +152,7 @@ Costs = tuple[list[Cost], list[Cost]]
 
 
 def faster(name: str, trees: Trees, costs: Costs, least: float) -> list[Figure]:
-    """Return how many times as fast this tree is, for the recipe and for equal rig seconds, and what each run took."""
+    """Return the speed ratio of this tree, for the recipe and for equal rig seconds, and the cost of each run."""
     words = f"{name}: CPU, {trees[0].name} / {trees[1].name}"
     cpu_s = [[cost.cpu_s for cost in side] for side in costs]
     paces = [[cost.cpu_s / cost.rig_s for cost in side] for side in costs]
@@ -162,7 +164,7 @@ def faster(name: str, trees: Trees, costs: Costs, least: float) -> list[Figure]:
 
 
 def shorter(name: str, trees: Trees, costs: Costs, limit: Limit | None) -> list[Figure]:
-    """Return which part of the earlier CPU time this tree takes, and what each run took."""
+    """Return this tree's CPU time as a part of the earlier one, and the cost of each run."""
     return [
         _share(f"{name}: CPU", trees, costs, _cpu_s, limit),
         _share(f"{name}: CPU for equal rig s", trees, costs, lambda cost: cost.cpu_s / cost.rig_s, None),
@@ -214,7 +216,7 @@ def beside_skeleton(
 
 
 def build(trees: Trees) -> list[Figure]:
-    """Return what the build of the compiled copy took: its user time on two cores, and its wall time here."""
+    """Return the cost of building the compiled copy: its user time on two cores, and its wall time here."""
     cost = build_of(trees[1])
     note = "user time / 2, an estimate for two idle cores"
     return [
@@ -224,7 +226,7 @@ def build(trees: Trees) -> list[Figure]:
 
 
 def main(arguments: Sequence[str]) -> int:
-    """Measure and print; return 1 where a figure misses what is asked."""
+    """Measure and print; return 1 if a figure misses its limit."""
     parser = parser_of("promises", "What this tree was to gain over an earlier commit.")
     parser.add_argument("names", nargs="*", metavar="NAME", help=f"{', '.join([*PROMISES, BUILD])} (default: all)")
     parser.add_argument("--skeleton", type=Path, metavar="FOLDER", help="folder of the skeleton's rig.py")

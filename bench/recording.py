@@ -23,7 +23,7 @@ PERIOD_S = 0.01
 FAST_PERIOD_S = 0.001
 SHARE_LIMIT_PERCENT = 2.0
 LATE_LIMIT_MS = 20.0
-"""Asked: no scan is later than that because of the recorder, with a disk hog beside it."""
+"""Limit of a scan's lateness due to the recorder, with a disk hog beside it."""
 HOG = """
 import os, sys
 block = os.urandom(8 << 20)
@@ -60,13 +60,13 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def sample_rows() -> list[tuple[float, ...]]:
-    """Return rows of which no two are alike, as scans make them."""
+    """Return rows that all differ, like those of scans."""
     width = len(QUANTITIES.names)
     return [(*(i * 0.01 + column * 1.7 for column in range(width - 1)), 1.0) for i in range(DIFFERENT_ROWS)]
 
 
 def bulk_us(rows: list[tuple[float, ...]], count: int) -> float:
-    """Write ``count`` rows as fast as it goes and return the CPU us for one, commits and close included."""
+    """Write ``count`` rows as fast as it goes and return the CPU us for one, including commits and close."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         begun = cpu_ns()
         with closing(RunWriter(Path(folder) / "run.db", QUANTITIES, clock=clock.monotonic, lossless=True)) as writer:
@@ -95,7 +95,7 @@ def paced_share(rows: list[tuple[float, ...]], seconds: float) -> float:
 
 
 def lost_samples(rows: list[tuple[float, ...]], seconds: float) -> int:
-    """Write a row every millisecond in real time and return how many are not in the file."""
+    """Write a row every millisecond in real time and return how many are missing in the file."""
     count = round(seconds / FAST_PERIOD_S)
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         with (
@@ -113,7 +113,7 @@ def lost_samples(rows: list[tuple[float, ...]], seconds: float) -> int:
 
 
 def beside_disk_hog(rows: list[tuple[float, ...]], seconds: float) -> tuple[float, float]:
-    """Return the longest call of the recorder, and how much later the latest scan was than a bare loop's, in ms."""
+    """Return the longest call of the recorder, and the excess of the greatest lateness over a bare loop's, in ms."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder, disk_hog(Path(folder)):
         bare, _ = latest(None, rows, seconds)
         with closing(RunWriter(Path(folder) / "run.db", QUANTITIES, clock=clock.monotonic)) as writer:

@@ -1,4 +1,4 @@
-"""The topics by name. A module is imported when its topic is measured: each knows ``measure(effort)``."""
+"""The topics by name. A module is imported when its topic is measured; each has ``measure(effort)``."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Measure = Callable[[Effort], list[Figure]]
 
 
 class Topic(NamedTuple):
-    """Where a topic lives and what it is about."""
+    """A topic's module and its subject."""
 
     module: str
     help: str
@@ -39,11 +39,11 @@ TOPICS: dict[str, Topic] = {
     "modules": Topic("bench.modules", "what each compiled module brings: its share of a plain scan, and its C"),
     "model": Topic("bench.model", "friction model on arrays beside bare NumPy"),
 }
-"""In the order in which they are measured and shown."""
+"""In the order of measuring and printing."""
 
 
 def chosen(names: tuple[str, ...]) -> list[str]:
-    """Return the topics to measure, all of them where none is named; raises KeyError with the first unknown name."""
+    """Return the topics to measure, all of them if none is named; raises KeyError with the first unknown name."""
     for name in names:
         if name not in TOPICS:
             raise KeyError(name)

@@ -15,7 +15,7 @@ _LEFT = (True, True, False, False, False, True, True, True)
 
 
 def table(results: Results, machine: Mapping[str, str | int]) -> str:
-    """Return machine, figures and a last line that says what was missed."""
+    """Return machine, figures and a last line with the misses."""
     rows = [_row(topic, figure) for topic, figures in results.items() for figure in figures]
     widths = [max(len(row[i]) for row in (HEADER, *rows)) for i in range(len(HEADER))]
     lines = [", ".join(f"{key}: {value}" for key, value in machine.items()), ""]
@@ -43,7 +43,7 @@ def as_json(results: Results, machine: Mapping[str, str | int]) -> str:
 
 
 def missed(results: Results) -> list[str]:
-    """Return ``topic: figure`` of everything that is not good enough."""
+    """Return ``topic: figure`` of all misses."""
     return [f"{topic}: {figure.name}" for topic, found in results.items() for figure in found if figure.missed]
 
 

@@ -1,9 +1,9 @@
 """Where the time of a scan goes: every part's own time, with the cost of measuring taken off.
 
-Each entry point of a part is wrapped while a run is built and ticked, outside the product: the wrapper charges the
-time since the last change to the part that was running, and hands over. What the wrapper itself takes is known from
-wrapping a function that does nothing, and subtracted for every call. Spans are of the wall clock, because reading the
-CPU clock costs as much as the spans last; the median of thousands of scans leaves out those that were interrupted.
+Each entry point of a part is wrapped while a run is built and ticked, outside the product: the wrapper charges the time
+since the last change to the part that was running, and switches parts. The wrapper's own cost, determined by wrapping a
+function that does nothing, is subtracted for every call. Spans are of the wall clock, because reading the CPU clock
+costs as much as the spans last; the median of thousands of scans leaves out those that were interrupted.
 """
 
 from __future__ import annotations
@@ -24,7 +24,7 @@ from tester.machine.tickers import collector_at_rest
 DRIVERS_LIMIT_US = 12.0
 DECIDING_LIMIT_US = 10.0
 RECORDER_LIMIT_US = 3.0
-"""Asked of the medians; control and executor together count with all that a scan does beside drivers and recorder."""
+"""Limits of the medians; "control and executor" includes everything in a scan except drivers and recorder."""
 
 GROUPS: dict[str, tuple[str, ...]] = {
     "nodes": tuple(name for name in PARTS if name.startswith("nodes")),
@@ -82,14 +82,14 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def _figure(name: str, runs: list[float]) -> Figure:
-    """Return a part's line; what belongs to a group is indented below it."""
+    """Return a part's line; members of a group are indented below it."""
     group, colon, part = name.partition(": ")
     shown = f"  {part}" if colon and group in GROUPS else name
     return Figure(shown, "us", tuple(runs), LIMITS.get(name), NOTES.get(name, ""))
 
 
 def _whole(seconds: float, runs: int) -> tuple[list[float], list[float]]:
-    """Return CPU us a scan of the untouched code, and ticks a scan."""
+    """Return CPU us per scan of the unwrapped code, and ticks per scan."""
     costs: list[float] = []
     ticks: list[float] = []
     with live_run(SLIDING_RECIPE) as live:

@@ -1,8 +1,8 @@
-"""Where the time of a compiled scan goes, seen from outside: nothing can be wrapped inside it.
+"""Where the time of a compiled scan goes, measured from outside: nothing can be wrapped inside it.
 
-The rig's ports are ordinary objects, so the wires and what answers behind them are timed there. What decides and what
-records is called again and again at one moment of a slide, which changes nothing but the run, and that is thrown away.
-What is left of a tick is the drivers' and the engine's.
+The rig's ports are ordinary objects, so the wires and the devices behind them are timed there. Control and recorder are
+called repeatedly at one moment of a slide; this changes only the run, which is discarded. The rest of a tick belongs to
+drivers and engine.
 """
 
 from __future__ import annotations
@@ -18,11 +18,11 @@ from drivers.ports import CanFrame, CanPort, CanWatcher, ForeseeingPort, LineWat
 from tester.machine.tickers import collector_at_rest, next_tick
 
 REPEATED = 2000
-"""Calls at one moment."""
+"""Number of calls at one moment."""
 
 
 class Toll:
-    """Time spent behind the ports, ns, and the calls it took."""
+    """Time spent behind the ports, ns, and the number of calls."""
 
     def __init__(self) -> None:
         """Nothing is spent yet."""
@@ -30,13 +30,13 @@ class Toll:
         self.calls = 0
 
     def pay(self, begun_ns: int) -> None:
-        """Add a call that began then."""
+        """Add a call that began at a time."""
         self.ns += wall_ns() - begun_ns
         self.calls += 1
 
 
 class TimedCan:
-    """A CAN port that notes how long it takes."""
+    """A CAN port that measures its own time."""
 
     def __init__(self, port: CanPort, toll: Toll) -> None:
         """Stand before ``port``."""
@@ -68,7 +68,7 @@ class TimedCan:
 
 
 class TimedLine:
-    """A simulated Modbus line that notes how long it takes."""
+    """A simulated Modbus line that measures its own time."""
 
     def __init__(self, port: ForeseeingPort, toll: Toll) -> None:
         """Stand before ``port``."""
@@ -99,7 +99,7 @@ class TimedLine:
 
 
 class Empty:
-    """A bus on which nothing happens, to know what timing it costs."""
+    """A bus on which nothing happens, to measure the cost of timing."""
 
     def send_cycle(self, can_ids: tuple[int, ...], payloads: tuple[bytes, ...], now: float) -> None:
         """Do nothing."""
@@ -112,7 +112,7 @@ class Empty:
         return []
 
     def watch(self, watcher: CanWatcher) -> Unwatch:
-        """Have nothing to tell."""
+        """Report nothing."""
         return lambda: None
 
 
@@ -184,7 +184,7 @@ def _ticks(
 
 
 def _own_cost() -> tuple[float, float]:
-    """Return what timing a call costs, ns: inside its span, and around it."""
+    """Return the cost of timing a call, ns: inside its span, and around it."""
     toll = Toll()
     port = TimedCan(Empty(), toll)
     begun = wall_ns()
@@ -195,7 +195,7 @@ def _own_cost() -> tuple[float, float]:
 
 
 def _again(call: Callable[[], object]) -> float:
-    """Return the CPU us of a call, made many times."""
+    """Return the CPU us of a call, averaged over many."""
 
     def work(count: int) -> None:
         for _ in range(count):

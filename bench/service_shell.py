@@ -1,7 +1,7 @@
-"""The service: what clients cost the scan, what it costs itself, how soon STOP is taken and a screen is back.
+"""The service: cost of clients to the scan, its own cost, and time until STOP is taken and a screen is back.
 
-The shell is tried out in two ways, as the decision on it asks: the gateway in a process of its own, and the same
-gateway as a thread beside the scan. Clients are in a process of theirs; some watch, some come back again and again.
+The shell is measured in two ways, as its decision requires: the gateway in a process of its own, and the same gateway
+as a thread beside the scan. Clients are in a separate process; some watch, some reconnect repeatedly.
 """
 
 from __future__ import annotations
@@ -35,9 +35,9 @@ PERIOD_S = 0.01
 POLL_EVERY = 2
 VIEWERS, COMERS = 4, 2
 SHELL_LIMIT = 2.0
-"""Asked of the lateness with clients beside that without."""
+"""Limit of the lateness with clients relative to that without."""
 CPU_LIMIT = 5.0
-"""Asked of the service without clients, % of a core."""
+"""Limit of the service without clients, % of a core."""
 STOP_LIMIT_MS = 50.0
 BACK_LIMIT_MS = 1000.0
 CLIENTS = """\
@@ -99,7 +99,7 @@ def measure(effort: Effort) -> list[Figure]:
 
 
 def lateness(own_process: bool, clients: bool, seconds: float) -> list[float]:
-    """Return how late each tick of a 100 Hz loop was that talks to clients as the service does."""
+    """Return the lateness of each tick of a 100 Hz loop that talks to clients as the service does."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         path = Path(folder) / "service.sock"
         hub = GatewayLink(LinkConfig(UnixAddress(path), Path(folder) / "service.json", Path(folder), "sim"))
@@ -116,7 +116,7 @@ def lateness(own_process: bool, clients: bool, seconds: float) -> list[float]:
 
 
 def _open_in_thread(hub: GatewayLink) -> None:
-    """Let the same gateway run as a thread of this process."""
+    """Run the same gateway as a thread of this process."""
     import socket
 
     ours, theirs = socket.socketpair()
@@ -125,7 +125,7 @@ def _open_in_thread(hub: GatewayLink) -> None:
 
 
 def _fill(service: Service) -> None:
-    """Give clients what an hour of running leaves: ten minutes of trend, two thousand events."""
+    """Provide clients with the data of an hour's run: ten minutes of trend, two thousand events."""
     for number in range(2000):
         service.desk.tell("step", f"something that has happened, number {number}")
         service.desk.poll(0.0)
@@ -135,14 +135,14 @@ def _fill(service: Service) -> None:
 
 
 def _ticks(service: Service, seconds: float) -> list[float]:
-    """Return lateness less the time for which the thread waited for a core: what is left is the process's own doing."""
+    """Return lateness less the thread's waiting time for a core: the rest is the process's own."""
     late: list[float] = []
     with collector_at_rest(), Path(f"/proc/self/task/{get_native_id()}/schedstat").open("rb", buffering=0) as waits:
         origin = clock.monotonic() + 0.5
         for number in range(round(seconds / PERIOD_S)):
             before = _waited_s(waits)
             late_s = clock.sleep_until(origin + number * PERIOD_S)
-            if late_s < PERIOD_S:  # later ones only catch up with a core that somebody else had
+            if late_s < PERIOD_S:  # later ones only catch up after another process had the core
                 late.append(max(late_s - (_waited_s(waits) - before), 0.0))
             if number % POLL_EVERY == 0:
                 service.desk.poll(0.0)
@@ -150,7 +150,7 @@ def _ticks(service: Service, seconds: float) -> list[float]:
 
 
 def _waited_s(schedstat: FileIO) -> float:
-    """Return how long this thread has waited on a run queue (Linux, schedstats: the second field, ns)."""
+    """Return this thread's waiting time on a run queue (Linux, schedstats: the second field, ns)."""
     schedstat.seek(0)
     return int(schedstat.read(100).split()[1]) * 1e-9
 
@@ -229,7 +229,7 @@ def _cpu_s(pid: int) -> float:
         try:
             fields = stat.read_text(encoding="utf-8", errors="replace").rpartition(")")[2].split()
         except OSError:
-            continue  # it has ended
+            continue  # the process has ended
         if int(stat.parent.name) == pid or int(fields[1]) == pid:
             found += (int(fields[11]) + int(fields[12])) / ticks
     return found

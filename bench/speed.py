@@ -19,9 +19,9 @@ from tester.run.session import Session
 from tester.run.session_options import SessionOptions
 
 COMPOUND_LIMIT = 800.0
-"""Asked of one compound of Table 2, rig s per CPU s; 1,500 is the stretch."""
+"""Limit for one compound of Table 2, rig s per CPU s; 1,500 is the stretch goal."""
 FLAT_LIMIT = 300.0
-"""Asked of the flat 100 Hz tick while sliding, rig s per CPU s."""
+"""Limit for the flat 100 Hz tick while sliding, rig s per CPU s."""
 
 
 class QuietScreen(ReportScreen):
@@ -64,7 +64,7 @@ def one_compound(shortened: bool) -> str:
 
 
 def session_speed(text: str) -> float:
-    """Run a recipe as ``tester run --yes --seed 1`` does and return rig seconds per CPU second."""
+    """Run a recipe like ``tester run --yes --seed 1`` and return rig seconds per CPU second."""
     with TemporaryDirectory(prefix="bench-", ignore_cleanup_errors=True) as folder:
         recipe = Path(folder) / "recipe.yaml"
         recipe.write_text(text, encoding="utf-8")

@@ -10,7 +10,7 @@ from bench.effort import Effort
 from bench.figures import Figure, at_most, ratio, unavailable
 
 HELP_LIMIT = 7.0
-"""Asked of ``tester --help`` beside ``python -c pass``."""
+"""Limit of ``tester --help`` relative to ``python -c pass``."""
 
 TESTER = "import sys; from tester.cli.main import main; main()"
 FIRST_SCAN = """\
@@ -24,7 +24,7 @@ Engine.tick = stop
 from tester.cli.main import main
 main()
 """
-"""``tester``, ended by its first scan: when every device is configured and heard."""
+"""``tester``, ended by its first scan: when every device is configured and has reported."""
 
 
 def measure(effort: Effort) -> list[Figure]:
@@ -41,7 +41,7 @@ def measure(effort: Effort) -> list[Figure]:
             ["-c", FIRST_SCAN, "run", "quickstart", "--yes", "--out", str(Path(folder) / "runs")],
         ]
         for call in calls:
-            cpu_seconds_of_child(call)  # leaves the bytecode of every module behind
+            cpu_seconds_of_child(call)  # writes the bytecode of every module
         found: list[list[float]] = [[] for _ in calls]
         for _ in range(effort.runs):
             sums = [0.0] * len(calls)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from time import perf_counter_ns, process_time_ns
 
 wall_ns = perf_counter_ns
-"""Elapsed time in ns: for spans of microseconds, of which medians are taken, and for lateness."""
+"""Elapsed time in ns: for medians of microsecond spans, and for lateness."""
 
 cpu_ns = process_time_ns
 """CPU time of this process, all its threads, in ns: for everything longer."""

@@ -1,4 +1,4 @@
-"""What one transaction of a Modbus line, both ends, and one tick of the plant cost on the simulated rig.
+"""Cost of one transaction of a Modbus line, both ends, and of one tick of the plant on the simulated rig.
 
 Nothing else runs: ``scan`` shows the same inside a whole scan. The load cell's line is ticked at 100 Hz, that of jacket
 and thermometer at 20 Hz, with the setpoint asked for in every tick.
@@ -40,7 +40,7 @@ Work = Callable[[int], object]
 
 
 def measure(effort: Effort) -> list[Figure]:
-    """Return us of CPU for transactions and ticks, thermal steps and draws of noise included."""
+    """Return us of CPU for transactions and ticks, including thermal steps and draws of noise."""
     count = effort.pick(20_000, 2_000)
     figures: list[Figure] = []
     with collector_at_rest():
@@ -91,7 +91,7 @@ def _cell_line() -> Work:
 
 
 def _slow_line() -> tuple[Work, Callable[[int], int]]:
-    """Return the work of so many ticks, and a function that does it and counts the transactions."""
+    """Return a function that does the work of so many ticks, and one that also counts the transactions."""
     plant = _plant()
     jacket, thermometer = ControllerSlave(load_profile(JACKET), 1, plant), IrSlave(load_profile(THERMOMETER), 2, plant)
     wire, link = ModbusWire(38400, "N", [jacket, thermometer]), ModbusLink("rtu", 38400)

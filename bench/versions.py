@@ -35,40 +35,40 @@ for (file, _, _), (_, _, alone, _, _) in pstats.Stats(profile).stats.items():
 print("own " + json.dumps(own))
 """
 NO_VALUE = 6
-"""Exit code of a run that has come to its end, in which a condition has no value."""
+"""Exit code of a finished run in which a condition has no value."""
 BUILT = "built.json"
-"""In a compiled copy: what its build took."""
+"""In a compiled copy: the cost of its build."""
 PACKAGES = ("compiling", "drivers", "recipes", "sim", "tester")
 INSTALLED = ("pyproject.toml", "setup.py", *(f"{name}/**/*" for name in PACKAGES))
-"""What an installation is made of."""
+"""The sources of an installation."""
 
 
 class Cost(NamedTuple):
-    """What a command took."""
+    """The cost of a command."""
 
     cpu_s: float
     """User and system time of all its processes."""
     user_s: float
     wall_s: float
     memory_mb: float
-    """Peak memory (10^6 bytes) of its greatest process."""
+    """Peak memory (10^6 bytes) of its largest process."""
     rig_s: float = 0.0
-    """Rig seconds of the run; 0 where it is none."""
+    """Rig seconds of the run; 0 for other commands."""
 
 
 class Tree(NamedTuple):
-    """A version that is measured: the folder its packages are imported from."""
+    """A measured version: the folder of its packages."""
 
     name: str
     folder: Path
 
     def call(self, code: str, *arguments: str, accepted: tuple[int, ...] = (0,)) -> tuple[str, Cost]:
-        """Run code with these packages; return its output and what it took. A failure ends the measurement."""
+        """Run code with these packages; return its output and cost. A failure ends the measurement."""
         command = [sys.executable, "-P", "-c", code, *arguments]
         return spent(self.name, command, self.folder, {"PYTHONPATH": str(self.folder)}, accepted)
 
     def cost(self, recipe: Path, out: Path, *options: str) -> Cost:
-        """Run a recipe with seed 1, its record in ``out`` (empty so far); return what the whole command took."""
+        """Run a recipe with seed 1, its record in ``out`` (empty so far); return the cost of the whole command."""
         call = ("run", str(recipe), "--yes", "--seed", "1", "--out", str(out), *options)
         cost = self.call(TESTER, *call, accepted=(0, NO_VALUE))[1]
         (record,) = out.glob("*/run.db")
@@ -98,14 +98,14 @@ Trees = tuple[Tree, Tree]
 def in_turns(
     trees: Trees, text: str, rounds: int, folder: Path, *options: str, each_round: Callable[[], object] | None = None
 ) -> tuple[list[Cost], list[Cost]]:
-    """Run a recipe on both versions in turns, ``each_round`` once in every round, and return what each run took."""
+    """Run a recipe on both versions in turns, ``each_round`` once in every round, and return the cost of each run."""
     recipe = folder / "recipe.yaml"
     recipe.write_text(text, encoding="utf-8")
     costs: tuple[list[Cost], list[Cost]] = ([], [])
     for number in range(rounds):
         if each_round is not None:
             each_round()
-        for side in (0, 1) if number % 2 else (1, 0):  # who begins alternates: speed drifts
+        for side in (0, 1) if number % 2 else (1, 0):  # alternate the order: speed drifts
             with TemporaryDirectory(dir=folder) as out:
                 cost = trees[side].cost(recipe, Path(out), *options)
             costs[side].append(cost)
@@ -116,9 +116,8 @@ def in_turns(
 def spent(
     name: str, command: Sequence[str], folder: Path, variables: Mapping[str, str], accepted: tuple[int, ...] = (0,)
 ) -> tuple[str, Cost]:
-    """Run a command in a folder with more variables in its environment; return its output and what it took (POSIX).
-
-    Raises SystemExit with ``name`` and the last of its complaints for an exit code that is not accepted.
+    """Run a command in a folder with more variables in its environment; return its output and cost (POSIX). Raises
+    SystemExit with ``name`` and the last of its complaints for an exit code that is not accepted.
     """
     with TemporaryFile() as out, TemporaryFile() as complaints:
         begun = wall_ns()
@@ -136,7 +135,7 @@ def spent(
 
 
 def parser_of(name: str, description: str) -> argparse.ArgumentParser:
-    """Return the parser of a command that compares two versions, with the options that all of them have."""
+    """Return the parser of a command that compares two versions, with the common options."""
     parser = argparse.ArgumentParser(prog=f"python -m bench {name}", description=description)
     parser.add_argument("--against", required=True, metavar="COMMIT", help="the earlier version")
     which = parser.add_mutually_exclusive_group()
@@ -148,7 +147,7 @@ def parser_of(name: str, description: str) -> argparse.ArgumentParser:
 
 
 def versions(given: argparse.Namespace, folder: Path) -> Iterator[tuple[str, Trees]]:
-    """Yield both versions, plain, then compiled, each made in ``folder`` when it is asked for."""
+    """Yield both versions, plain, then compiled, each made in ``folder`` on demand."""
     before = Tree(given.against, sources(given.against, folder / "before"))
     now = Tree("this tree", sources(None, folder / "now"))
     if not given.compiled:
@@ -160,7 +159,7 @@ def versions(given: argparse.Namespace, folder: Path) -> Iterator[tuple[str, Tre
 
 
 def measured_on() -> dict[str, str | int]:
-    """Return the machine and the interpreter, without what this process has imported."""
+    """Return the machine and the interpreter, without this process's imports."""
     return {key: value for key, value in machine().items() if key not in ("measured", "compiled scan")}
 
 
@@ -194,12 +193,12 @@ def compiled(tree: Tree, kept: Path) -> Tree:
 
 
 def build_of(tree: Tree) -> Cost:
-    """Return what the build of a compiled copy took."""
+    """Return the cost of building a compiled copy."""
     return Cost(**json.loads((tree.folder / BUILT).read_text(encoding="utf-8")))
 
 
 def fingerprint(folder: Path) -> str:
-    """Return a name for what is installed of these sources by this interpreter."""
+    """Return a name for this interpreter's installation of these sources."""
     digest = sha256(sys.version.encode())
     for path in sorted(path for pattern in INSTALLED for path in folder.glob(pattern)):
         if path.is_file() and path.suffix != ".pyc":

@@ -1,4 +1,4 @@
-"""The entry points of the parts of a scan, wrapped for as long as a measurement lasts."""
+"""Wraps the entry points of a scan's parts during a measurement."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ ENTRY_POINTS: tuple[tuple[str, str, str, tuple[str, ...]], ...] = (
 
 @contextmanager
 def wrapped(ledger: Ledger) -> Generator[list[str], None, None]:
-    """Wrap all entry points; give those that no longer exist. A rig has to be built inside the block."""
+    """Wrap all entry points; yield those that no longer exist. A rig must be built inside the block."""
     undo: list[tuple[type, str, object]] = []
     missing: list[str] = []
 
@@ -77,7 +77,7 @@ def _subscribing(
 
 
 def _leaving(forget: Callable[..., Any], known: dict[object, Callable[..., Any]]) -> Callable[..., None]:
-    """Return a ``CanListeners.forget`` that knows which measured listener stands for a bare one."""
+    """Return a ``CanListeners.forget`` that maps a bare listener to its measured one."""
 
     def leave(wire: object, can_id: int, listener: Callable[..., Any]) -> None:
         forget(wire, can_id, known.get(listener, listener))

@@ -1,4 +1,4 @@
-"""The build back end (PEP 517): setuptools, which asks for mypy only where the scan is to be compiled."""
+"""The build back end (PEP 517): setuptools, which requires mypy only to compile the scan."""
 
 from __future__ import annotations
 
@@ -28,13 +28,13 @@ __all__ = [
 ]
 
 COMPILER = "mypy[mypyc]>=2.4,<2.5"
-"""Translates Python to C; pinned to one minor release, as another may translate another way."""
+"""Translates Python to C; pinned to one minor release, as another may translate differently."""
 
 Settings = Mapping[str, object]
 
 
 def get_requires_for_build_wheel(config_settings: Settings | None = None) -> list[str]:
-    """Return what a wheel is built with, beside setuptools: nothing, or mypy where the scan is to be compiled."""
+    """Return the build requirements besides setuptools: none, or mypy to compile the scan."""
     required = build_meta.get_requires_for_build_wheel(config_settings)
     return [*required, COMPILER] if wanted() else required
 
@@ -42,7 +42,7 @@ def get_requires_for_build_wheel(config_settings: Settings | None = None) -> lis
 def build_editable(
     wheel_directory: str, config_settings: Settings | None = None, metadata_directory: str | None = None
 ) -> str:
-    """Make an editable installation, which is plain Python. Raises SystemExit where a compiled one is asked for."""
+    """Make an editable installation, which is plain Python. Raises SystemExit if a compiled one is requested."""
     if wanted():
         raise SystemExit(f"{VARIABLE}=1: an editable installation runs the source and cannot be compiled; unset it")
     return build_meta.build_editable(wheel_directory, config_settings, metadata_directory)

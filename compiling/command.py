@@ -1,4 +1,4 @@
-"""The build step that compiles the scan on all cores, and reports what it does (`pip -v` shows it)."""
+"""The build step that compiles the scan on all cores, and reports its progress (`pip -v` shows it)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from distutils.sysconfig import customize_compiler
 from itertools import count
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from time import monotonic  # noqa: TID251 - how long a build takes is told to people
+from time import monotonic  # noqa: TID251 - the build prints its duration
 
 from setuptools import Extension
 from setuptools.command.build_ext import build_ext
@@ -22,16 +22,18 @@ from compiling.modules import BUSIEST, HOT
 from compiling.wanted import VARIABLE
 
 LIBRARY = "friction_tester"
-"""Begins the name of the library that all compiled modules share."""
+"""Prefix of the name of the library that all compiled modules share."""
 OPTIONS = ("--ignore-missing-imports", "--follow-imports=silent")
 PLACEHOLDER = Extension("tester.compiled", [])
-"""Says that there is something to compile, so that the wheel is one for this platform."""
+"""Marks the build as compiled, so that the wheel is for this platform."""
 FLAGS = {"unix": ("-O1", "-fvisibility=hidden", "-fno-asynchronous-unwind-tables")}
-"""By the kind of compiler, after mypyc's own: -O1 is as fast as -O2 here and takes two thirds of the time to build."""
+"""By the kind of compiler, after mypyc's own flags: -O1 is as fast as -O2 here and takes two thirds of the time to
+build."""
 FLAGS_OF_REST = {"unix": ("-Og",)}
-"""After those, for what is not busiest: 7 % slower than -O1 if it were used for all, in two thirds of its time."""
+"""After those, for all but the busiest modules: if used for all, 7 % slower than -O1 and built in two thirds of the
+time."""
 UNITS = 6
-"""C files that are compiled of the busiest modules, and of the rest."""
+"""Number of C files for the busiest modules, and for the rest."""
 _REST = "rest"
 _ROOT = Path(__file__).parents[1]
 _LINES = 10
@@ -39,10 +41,10 @@ _LINES = 10
 
 
 class CompileScan(build_ext):
-    """Translates the modules of the scan to C and compiles them; fails clearly where that cannot be done."""
+    """Translates the modules of the scan to C and compiles them; fails with a clear message if it cannot."""
 
     def run(self) -> None:
-        """Look for a compiler, translate, compile, link. Raises SystemExit with what is missing."""
+        """Look for a compiler, translate, compile, link. Raises SystemExit that names what is missing."""
         require_compiler()
         begun = monotonic()
         with TemporaryDirectory(prefix="friction-tester-") as folder:
@@ -58,7 +60,7 @@ class CompileScan(build_ext):
         say(f"compiled in {monotonic() - begun:.0f} s")
 
     def build_extensions(self) -> None:
-        """Compile the library that holds every module, then the small files by which Python finds the modules in it."""
+        """Compile the library that holds every module, then the small files through which Python finds its modules."""
         self.check_extensions_list(self.extensions)
         library, *doors = sorted(self.extensions, key=lambda extension: -len(extension.sources))
         kind = self.compiler.compiler_type
@@ -71,7 +73,7 @@ class CompileScan(build_ext):
             self.build_doors(alike, Path(library.sources[0]).with_name(f"doors_{number}.c"))
 
     def build_doors(self, doors: Sequence[Extension], source: Path) -> None:
-        """Build one file with the entry functions of all these modules, and put a copy in the place of each."""
+        """Build one file with the entry functions of all these modules, and copy it to the place of each."""
         write_doors([door.sources[0] for door in doors], source)
         first, *others = doors
         first.sources = [str(source)]
@@ -85,7 +87,7 @@ class CompileScan(build_ext):
 def joined(sources: Sequence[str]) -> list[str]:
     """Write C files that include the sources, of about equal size, beside them, and return their names.
 
-    Every file reads a megabyte of headers, so a few are compiled in less time than many. One includes mypyc's own.
+    Every file reads a megabyte of headers, so a few files compile faster than many. One includes mypyc's own.
     """
     busiest = {c_file(name) for name in BUSIEST}
     units: dict[str, list[Path]] = {}
@@ -106,7 +108,7 @@ def c_file(module: str) -> str:
 
 
 def without_namesakes(doors: Sequence[Extension]) -> list[list[Extension]]:
-    """Return the modules in lists in which no two have the same last name: an entry function has that name."""
+    """Return the modules in lists without duplicate last names: an entry function has that name."""
     lists: list[dict[str, Extension]] = []
     for door in doors:
         last = door.name.rpartition(".")[2]
@@ -156,7 +158,7 @@ def side_by_side(compile_files: Compile, jobs: int, flags_of_rest: Sequence[str]
 
 
 def translated(folder: Path) -> list[Extension]:
-    """Translate the modules to C files in ``folder``; return what is to be compiled. Raises SystemExit."""
+    """Translate the modules to C files in ``folder``; return the sources to compile. Raises SystemExit."""
     try:
         from mypyc.build import mypycify
     except ImportError as error:
@@ -186,7 +188,7 @@ def require_compiler() -> None:
 
 
 def impossible(why: str) -> SystemExit:
-    """Return the end of a build that was asked to compile and cannot."""
+    """Return the exception of a build that should compile but cannot."""
     return SystemExit(
         f"friction-tester: {VARIABLE}=1 asks for a compiled scan: {why}\n"
         f"Without {VARIABLE} the same program is installed as plain Python, with the same results."
@@ -194,7 +196,7 @@ def impossible(why: str) -> SystemExit:
 
 
 def cores() -> int:
-    """Return on how many cores this process may run."""
+    """Return the number of cores that this process may use."""
     if hasattr(os, "sched_getaffinity"):
         return len(os.sched_getaffinity(0))
     return os.cpu_count() or 1

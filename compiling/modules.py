@@ -1,4 +1,4 @@
-"""Which modules are compiled: those in which a plain scan spends its time, and what they cannot do without.
+"""Which modules are compiled: those in which a plain scan spends its time, and those that these need.
 
 ``python -m bench modules`` measures the shares (docs/decisions/running.md, decision 19).
 """
@@ -6,10 +6,9 @@
 from __future__ import annotations
 
 THRESHOLD = 0.1
-"""Least share (%) of a plain scan's Python time for which a module is compiled, in one of two recipes.
-
-A compiled scan takes a quarter of the time, so a module of 0.1 % makes it 0.3 % slower if it stays Python; the mean
-module takes a second of CPU time to build.
+"""Least share (%) of a plain scan's Python time for which a module is compiled, in one of two recipes. A compiled scan
+takes a quarter of the time, so a module of 0.1 % that stays Python makes it 0.3 % slower; the average module takes a
+second of CPU time to build.
 """
 BUSIEST = (
     "drivers/axis_command.py",
@@ -62,7 +61,7 @@ BUSIEST = (
     "tester/machine/tickers.py",
     "tester/machine/wires.py",
 )
-"""Files with 1 % or more, which the compiler optimises further (``compiling.command``)."""
+"""Files of 1 % or more, which the compiler optimises further (``compiling.command``)."""
 PAYING = (
     *BUSIEST,
     "drivers/temperature_controller.py",
@@ -142,4 +141,4 @@ NEEDED = (
 )
 """Files below the threshold: bases of compiled classes, classes made from them, and data that a scan reads."""
 HOT = tuple(sorted((*PAYING, *NEEDED)))
-"""All that is compiled."""
+"""All compiled modules."""

@@ -1,4 +1,4 @@
-"""Whether the scan is to be compiled: the environment says so."""
+"""The environment decides whether the scan is compiled."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ _MEANS = {"": False, "0": False, "1": True}
 
 
 def wanted() -> bool:
-    """Return whether to compile. Raises SystemExit, as a build does, where the variable has another value."""
+    """Return whether to compile. Raises SystemExit, like a failed build, if the variable has another value."""
     value = os.environ.get(VARIABLE, "")
     if value not in _MEANS:
         raise SystemExit(f"{VARIABLE}={value}: expected 1 (compile the scan) or 0 (plain Python, the default)")
