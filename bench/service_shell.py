@@ -109,7 +109,7 @@ def lateness(own_process: bool, clients: bool, seconds: float) -> list[float]:
         else:
             _open_in_thread(hub)
         _fill(service)
-        with _clients(path) if clients else _nobody():
+        with _clients(path) if clients else _no_clients():
             late = _ticks(service, seconds)
         hub.close()
     return late
@@ -171,7 +171,7 @@ def _clients(path: Path) -> Generator[None]:
 
 
 @contextmanager
-def _nobody() -> Generator[None]:
+def _no_clients() -> Generator[None]:
     yield
 
 

@@ -54,7 +54,7 @@ class Stranger(NamedTuple):
     spectrum: str
 
 
-class Told(NamedTuple):
+class CompoundResult(NamedTuple):
     """The result of a seed. ``errors``: commands that failed, with their last words."""
 
     seed: int
@@ -128,16 +128,16 @@ class CommandError(Exception):
 
 def call(*words: str, allowed: tuple[int, ...] = (0,)) -> str:
     """Call a command as a user does; return its output. Raises CommandError."""
-    out, told = io.StringIO(), io.StringIO()
-    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(told):
+    out, error_output = io.StringIO(), io.StringIO()
+    with contextlib.redirect_stdout(out), contextlib.redirect_stderr(error_output):
         code = invoke(list(words))
     if code not in allowed:
-        last = (out.getvalue() + told.getvalue())[-400:]
+        last = (out.getvalue() + error_output.getvalue())[-400:]
         raise CommandError(f"tester {' '.join(words[:2])}: exit code {code}: {last}")
     return out.getvalue()
 
 
-def measure(seed: int, folder: Path, law: str) -> Told:
+def measure(seed: int, folder: Path, law: str) -> CompoundResult:
     """Go through a laboratory's work with the compound of a seed. Raises CommandError."""
     stranger = drawn(seed)
     (folder / "sweep.csv").write_text(stranger.sweep, encoding="utf-8")
@@ -171,30 +171,30 @@ def measure(seed: int, folder: Path, law: str) -> Told:
     return held_against(seed, read_law(kept), next((folder / "held").iterdir()))._replace(law=law)
 
 
-def held_against(seed: int, law: KeptLaw, run: Path) -> Told:
+def held_against(seed: int, law: KeptLaw, run: Path) -> CompoundResult:
     """Compare the measured coefficients of a run with a kept law's intervals."""
     with RunReader(run) as reader:
         found = results_of(reader)
     inside, off, wide = 0, [], []
     for condition in found.conditions():
-        held = condition.info.setpoint
+        setpoint = condition.info.setpoint
         temperature_c = condition.result.measured["contact_c"]
-        told = law.predict(temperature_c, held.number("load"), held.number("track_speed"))
+        predicted = law.predict(temperature_c, setpoint.number("load"), setpoint.number("track_speed"))
         mu = condition.result.mu
-        inside += told.low <= mu <= told.high
-        off.append(100.0 * abs(mu / told.mu - 1.0))
-        wide.append(50.0 * (told.high - told.low) / told.mu)
+        inside += predicted.low <= mu <= predicted.high
+        off.append(100.0 * abs(mu / predicted.mu - 1.0))
+        wide.append(50.0 * (predicted.high - predicted.low) / predicted.mu)
     half_percent = median(wide) if wide else 0.0
-    return Told(seed, (), inside, len(off), max(off, default=0.0), half_percent, len(law.doubts))
+    return CompoundResult(seed, (), inside, len(off), max(off, default=0.0), half_percent, len(law.doubts))
 
 
-def one(seed: int, law: str) -> Told:
+def one(seed: int, law: str) -> CompoundResult:
     """Return the result of a seed."""
     with tempfile.TemporaryDirectory() as folder:
         try:
             return measure(seed, Path(folder), law)
         except CommandError as error:
-            return Told(seed, (str(error),))
+            return CompoundResult(seed, (str(error),))
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -207,17 +207,17 @@ def main(arguments: list[str] | None = None) -> int:
     read = parser.parse_args(arguments)
     seeds = SAMPLE_SEEDS if read.sample else read.seeds
     met = True
-    found: list[Told] = []
+    results: list[CompoundResult] = []
     with get_context("spawn").Pool(read.jobs) as pool:
-        for told in pool.imap(partial(one, law=read.law), range(seeds)):
-            found.append(told)
-            for error in told.errors:
-                print(f"MISS seed {told.seed}: {error}", flush=True)
-            if not told.errors:
-                print(f"     seed {told.seed}, {told.law}: {told.inside} of {told.held_out} inside, half-width"
-                      f" {told.half_width_percent:.1f} %, off by {told.greatest_percent:.1f} % at most", flush=True)
-    failed = sum(bool(told.errors) for told in found)
-    held_out, inside = sum(told.held_out for told in found), sum(told.inside for told in found)
+        for result in pool.imap(partial(one, law=read.law), range(seeds)):
+            results.append(result)
+            for error in result.errors:
+                print(f"MISS seed {result.seed}: {error}", flush=True)
+            if not result.errors:
+                print(f"     seed {result.seed}, {result.law}: {result.inside} of {result.held_out} inside, half-width"
+                      f" {result.half_width_percent:.1f} %, off by {result.greatest_percent:.1f} % at most", flush=True)
+    failed = sum(bool(result.errors) for result in results)
+    held_out, inside = sum(result.held_out for result in results), sum(result.inside for result in results)
     share = inside / held_out if held_out else 0.0
     low, high = INSIDE
     if read.sample:

@@ -64,14 +64,14 @@ def pairs_of(name: str, seed: int, options: tuple[str, ...], *changes: tuple[str
     text = Path(recipes.find(name)).read_text(encoding="utf-8")
     for change in changes:
         text = text.replace(*change)
-    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()) as told:
+    with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stderr(io.StringIO()) as errors:
         recipe, runs = Path(folder) / "recipe.yaml", Path(folder) / "runs"
         recipe.write_text(text, encoding="utf-8")
         with contextlib.redirect_stdout(io.StringIO()):
             code = invoke(["run", str(recipe), "--rig", "pin-on-disc", "--yes", "--seed", f"{seed}", "--out", str(runs),
                            *options])  # fmt: skip
         if code:
-            raise RuntimeError(f"seed {seed}: exit code {code}: {told.getvalue()[-500:]}")
+            raise RuntimeError(f"seed {seed}: exit code {code}: {errors.getvalue()[-500:]}")
         with RunReader(next(runs.iterdir())) as reader:
             return [*film_pairs(results_of(reader))]
 
@@ -108,8 +108,8 @@ def main(arguments: list[str] | None = None) -> int:
     with get_context("spawn").Pool(read.jobs) as pool:
         found = [one for own in pool.map(partial(measure, sample=read.sample), range(seeds), 1) for one in own]
     for one in found:
-        told = f"share {one.share:.4f} ± {one.expanded:.4f}, put in {one.truth:.3g}"
-        print(f"     seed {one.seed}, {one.compound}: {told}; conditions {one.rows[0]} of {one.rows[1]}")
+        text = f"share {one.share:.4f} ± {one.expanded:.4f}, put in {one.truth:.3g}"
+        print(f"     seed {one.seed}, {one.compound}: {text}; conditions {one.rows[0]} of {one.rows[1]}")
     missed = 0
     for text, met in figures(found, seeds):
         missed += not met

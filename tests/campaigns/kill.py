@@ -109,12 +109,12 @@ def stall(folder: Path) -> list[Figure]:
         run.process.send_signal(signal.SIGCONT)
         found = watch(sim, gone_s)
         code = run.process.wait(timeout=30.0)
-        said = run.said()
+        output = run.said()
     name = f"stopped for {1e3 * STALL_S:.0f} ms"
     return [
         holds(f"{name}: drives", found.stopped_in_time, str(found), "250 ms + v/a, by their own watchdog"),
         equal(f"{name}: exit code (tripped)", code, 5),
-        holds(f"{name}: trip", "trip" in said, said, "a trip with its reason"),
+        holds(f"{name}: trip", "trip" in output, output, "a trip with its reason"),
     ]
 
 

@@ -73,9 +73,9 @@ def of_table(name: str, compound: str, surface: str, points: int) -> Iterator[La
     yield LawFigure(f"as the rig has it, {' x '.join(map(str, table.points))}", f"{took_s:.2f} s", "said")
     for what, one, asked in ((f"off the law, {size}", plain, False), ("off the law, as the rig has it", table, True)):
         errors = [abs(one.mu(*at) / slow.mu(*at) - 1.0) for at in at_random(span, points, 7)]
-        said = f"{100.0 * max(errors):.3f} %, median {100.0 * median(errors):.4f} %, told {100.0 * one.error:.3f} %"
+        text = f"{100.0 * max(errors):.3f} %, median {100.0 * median(errors):.4f} %, told {100.0 * one.error:.3f} %"
         met = max(errors) < ALLOWED or not asked
-        yield LawFigure(f"{what}, worst of {points}", said, f"< {100.0 * ALLOWED:g} %" if asked else "said", met)
+        yield LawFigure(f"{what}, worst of {points}", text, f"< {100.0 * ALLOWED:g} %" if asked else "said", met)
     yield from of_calls(table, list(at_random(span, 4000, 8)))
 
 

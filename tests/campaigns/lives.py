@@ -246,7 +246,7 @@ def live(life: Life) -> Lived:
     return Living(life).to_the_end()
 
 
-def told(lived: Lived) -> str:
+def life_text(lived: Lived) -> str:
     """Return a life as one line."""
     life = lived.life
     what = lived.ended or ("to the least diameter" if lived.left_mm == lived.left_mm else "to the end of its recipe")

@@ -77,7 +77,7 @@ class Schedule:
     def __init__(self, seed: int, folder: Path, relay: MailRelay, tally: Tally) -> None:
         self.random = Random(seed)
         self.seed, self.folder, self.relay, self.tally = seed, folder, relay, tally
-        self.told: list[Notice] = []
+        self.notices_sent: list[Notice] = []
         self.now_s = NOON_S - 4.0 * 3600.0  # away from the hour of the morning's message
         self.kills = self.losses = 0
         self.may_kill = True
@@ -91,7 +91,7 @@ class Schedule:
                 file = KillableFile(self.folder / "outbox", left)
                 scene = OutboxScene(self.folder, mail_settings(self.relay.port, to=[ANNA, HEAD], second=[]),
                                     now_s=self.now_s, file=file)  # fmt: skip
-                for note in self.told:
+                for note in self.notices_sent:
                     scene.take(note)
             except Killed:
                 self.kills += 1
@@ -127,9 +127,9 @@ class Schedule:
                 relay.drops = 1
             waiting = relay.loses, relay.drops
             for _ in range(random.choice((0, 1, 1, 1, 3))):
-                self.told.append(notice(len(self.told) + 1))
+                self.notices_sent.append(notice(len(self.notices_sent) + 1))
                 try:
-                    self.scene.take(self.told[-1])
+                    self.scene.take(self.notices_sent[-1])
                 except Killed:
                     self.kills += 1
                     self.scene.close()
@@ -149,10 +149,10 @@ class Schedule:
     def count(self) -> None:
         """Compare the notices accepted by the relay with those sent by the service."""
         tally, bad = self.tally, list[str]()
-        tally.notices += 2 * len(self.told)
+        tally.notices += 2 * len(self.notices_sent)
         tally.kills += self.kills
         tally.answers_lost += self.losses
-        expected = [one.what for one in self.told]
+        expected = [one.what for one in self.notices_sent]
         doubled = 0
         for place in (ANNA, HEAD):
             mails = [mail for mail in self.relay.taken if mail.to == [place]]

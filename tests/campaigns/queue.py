@@ -88,8 +88,8 @@ def by_rig(
         made_of, took_s = kept.get((one.name, one.world), ("", ()))
         stale += bool(made_of) and made_of != one.made_of
         if took_s:
-            told = one.expected(folder)
-            needs = Needs(told.rig_seconds, told.rig_seconds_low, told.rig_seconds_high, 1, 1)
+            estimate = one.expected(folder)
+            needs = Needs(estimate.rig_seconds, estimate.rig_seconds_low, estimate.rig_seconds_high, 1, 1)
             known.setdefault(one.rig, []).append((needs, took_s))
     return known, stale
 

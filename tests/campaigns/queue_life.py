@@ -197,7 +197,7 @@ class Life:
     # -- the run ------------------------------------------------------------------------------------------------
 
     def _session(
-        self, order: Order, options: SessionOptions, _yes: bool, _notes: str, work: object, told: Callable[[str], None]
+        self, order: Order, options: SessionOptions, _yes: bool, _notes: str, work: object, start: Callable[[str], None]
     ) -> tuple[RunView | None, str]:
         """Play a run: it may fail to begin, asks, and ends as drawn."""
         stage = self._stage
@@ -219,7 +219,7 @@ class Life:
         self._check_start(number)
         world.begun[number] += 1
         self.counts["runs"] += 1
-        told(f"run-{number}")
+        start(f"run-{number}")
         world.asks = random.random() < 0.3
         status = random.choices(
             [RunStatus.DONE, RunStatus.INCOMPLETE, RunStatus.FAILED, RunStatus.TRIPPED], [12, 3, 1, 1]

@@ -193,7 +193,7 @@ def figures(found: Sequence[Found]) -> Iterator[tuple[str, bool]]:
         yield text, wide <= WIDEST_STIFFNESS
 
 
-def told(one: Found) -> str:
+def run_text(one: Found) -> str:
     """Return a run as a line."""
     parts = [f"seed {one.rubber.seed:2}:"]
     for name, judged in (("relaxation", one.relaxation), ("softening", one.softening)):
@@ -221,7 +221,7 @@ def main(arguments: list[str] | None = None) -> int:
     with ProcessPoolExecutor(read.jobs, mp_context=get_context("spawn")) as pool:
         for one in pool.map(carry_out, seeds):
             found.append(one)
-            print(f"   {told(one)}", flush=True)
+            print(f"   {run_text(one)}", flush=True)
     missed = 0
     for text, kept in figures(found):
         missed += not kept

@@ -103,8 +103,8 @@ def _row(seed: int, one: TableRow, database: sqlite3.Connection) -> Row:
     mu, slow = result.mu, setpoint.number("slip_velocity") == SLOW_M_S
     if not (result.ok and isfinite(mu)):
         return Row(seed, condition_words(setpoint), slow, False, tuple(result.doubts), *2 * [float("nan")], "")
-    said = "SELECT name, value FROM truth WHERE condition = ?"
-    true = dict(database.execute(said, [one.info.condition]))
+    query = "SELECT name, value FROM truth WHERE condition = ?"
+    true = dict(database.execute(query, [one.info.condition]))
     this = true["model"] * true["condition"] * true["wheel"] if {"model", "condition", "wheel"} <= true.keys() else 0.0
     worst = max(result.budget.contributions, key=lambda term: term.standard).name
     off = 100.0 * (mu / this - 1.0) if this else float("nan")
@@ -146,8 +146,8 @@ def main(arguments: list[str] | None = None) -> int:
             rows += found
             for one in found:
                 if one.slow or not one.trusted:
-                    told = f"U {one.u_percent:.1f} %, off by {one.off_percent:+.1f} %, largest {one.largest}"
-                    print(f"     seed {one.seed} {one.words}: {told} {' '.join(one.doubts)}".rstrip(), flush=True)
+                    text = f"U {one.u_percent:.1f} %, off by {one.off_percent:+.1f} %, largest {one.largest}"
+                    print(f"     seed {one.seed} {one.words}: {text} {' '.join(one.doubts)}".rstrip(), flush=True)
     missed = 0
     for figure in figures(rows):
         print(figure, flush=True)

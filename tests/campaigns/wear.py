@@ -24,7 +24,7 @@ from tester.run.session import Session
 from tester.run.session_options import SessionOptions
 from tester.store.run_reader import RunReader
 from tests.campaigns.compiled.worker import Silent
-from tests.campaigns.lives import LIVES, RUBBER_EXPANSION, SAMPLE_LIVES, Lived, drawn, live, told
+from tests.campaigns.lives import LIVES, RUBBER_EXPANSION, SAMPLE_LIVES, Lived, drawn, life_text, live
 from tests.campaigns.lives import figures as figures_of_lives
 
 RATES = {0.02: 0.08, 0.08: 0.24, 0.24: 0.08}
@@ -126,7 +126,7 @@ def main(arguments: list[str] | None = None) -> int:
             print(f"   seed {seed:2} rate {rate:g}: {one.rate:.4f} +- {one.expanded:.4f}{off}", flush=True)
         for one in pool.map(live, [drawn(seed, short=read.sample) for seed in lives]):
             lived.append(one)
-            print(f"   {told(one)}", flush=True)
+            print(f"   {life_text(one)}", flush=True)
     missed = 0
     for figure in figures_of_lives(lived):
         missed += not figure.ok

@@ -130,12 +130,12 @@ STATUS_BYTES = 2
 
 def _timed(record: CanRecord, axis: Axis) -> list[tuple[float, str]]:
     """Return the changes of a drive's state: time, name."""
-    told = list(zip(record.times(0x180 + axis.node).tolist(), record.readings(axis)["6041"].tolist(), strict=True))
+    words_at = list(zip(record.times(0x180 + axis.node).tolist(), record.readings(axis)["6041"].tolist(), strict=True))
     # Wheel and belt also report a change at once: the next scan may command another one before TPDO1 is due.
     at_once = (frame for frame in record.frames[0x280 + axis.node] if len(frame[1]) == STATUS_BYTES)
-    told += [(t, int.from_bytes(data, "little")) for t, data in at_once]
-    told.sort(key=lambda one: one[0])
-    times, words = [t for t, _ in told], np.array([word for _, word in told])
+    words_at += [(t, int.from_bytes(data, "little")) for t, data in at_once]
+    words_at.sort(key=lambda one: one[0])
+    times, words = [t for t, _ in words_at], np.array([word for _, word in words_at])
     words = words & 0x6F
     words = np.where((words & 0x4F) == 0x40, 0x40, np.where((words & 0x48) == 0x08, words & 0x4F, words))
     changes = np.flatnonzero(np.diff(words, prepend=-1))
@@ -228,16 +228,16 @@ def _pre_grind(record: CanRecord, cell: CellRecord) -> Iterator[Figure]:
     yield holds("pre-grind: target of the wheel at the radius of a new one (0x60FF)", fits, spread,
                 f"{WHEEL} m/s, then rising with wear by less than 0.5 %")  # fmt: skip
     sync = record.times(SYNC_ID)
-    told = sync[(sync >= times[begin]) & (sync <= times[end] + 1.0)]
-    wheel_m_s = _speeds(record, "wheel", told) * (WHEEL / rim.mean())
-    belt_m_s = _speeds(record, "belt", told)
+    ground_s = sync[(sync >= times[begin]) & (sync <= times[end] + 1.0)]
+    wheel_m_s = _speeds(record, "wheel", ground_s) * (WHEEL / rim.mean())
+    belt_m_s = _speeds(record, "belt", ground_s)
     reached = (np.abs(wheel_m_s - WHEEL) <= SPEED_SHARE * WHEEL) & (np.abs(belt_m_s - BELT) <= SPEED_SHARE * BELT)
     first_touch = cell.times_s[np.flatnonzero(cell.raw_n > TOUCHED_N)[0]]
     zero = cell.zero_n(first_touch - 1.0)
-    loads = cell.trailing_mean_n(told, 1.0) - zero
+    loads = cell.trailing_mean_n(ground_s, 1.0) - zero
     in_band = np.abs(loads - LOAD_N) <= 0.02 * LOAD_N
     good = np.flatnonzero(reached & in_band)
-    span = told[good[-1]] - told[good[0]]
+    span = ground_s[good[-1]] - ground_s[good[0]]
     yield near("pre-grind: both actual speeds within 1 % (0x606C) and load within 2 % (1 s mean)", float(span), GRIND_S,
                0.1, "s", 3)  # fmt: skip
     yield equal("pre-grind: ticks in between with a speed or the load off", int(good[-1] - good[0] + 1 - len(good)), 0)

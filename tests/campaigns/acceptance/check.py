@@ -50,8 +50,8 @@ def figures(bench: Bench) -> Iterator[Figure]:
     found = _places(done.stderr, str(path))
     yield equal("five mistakes: problems", len(found), len(WHERE))
     for name, place in WHERE.items():
-        said = found.get(place, "nothing there")
-        yield holds(f"{name}: line {place[0]}, column {place[1]}", place in found, said, "is named")
+        message = found.get(place, "nothing there")
+        yield holds(f"{name}: line {place[0]}, column {place[1]}", place in found, message, "is named")
     yield from _refused(bench, "60 kB of [", "[" * 60_000, "", done.cpu_s)
     yield from _refused(bench, "a key twice", DUPLICATE, ":13:5: duplicate key", done.cpu_s)
 
@@ -61,8 +61,8 @@ def _refused(bench: Bench, name: str, text: str, says: str, small_s: float) -> I
     yield equal(f"{name}: exit code", done.code, EXIT_INVALID)
     lines = done.stderr.splitlines()
     yield equal(f"{name}: problems", len(lines), 1)
-    said = lines[0].rpartition("refused.yaml")[2][:100] if lines else ""
-    yield holds(f"{name}: message", bool(said) and says in said, said, f"has {says}" if says else "has a place")
+    shown = lines[0].rpartition("refused.yaml")[2][:100] if lines else ""
+    yield holds(f"{name}: message", bool(shown) and says in shown, shown, f"has {says}" if says else "has a place")
     times = done.cpu_s / small_s
     yield at_most(f"{name}: CPU time, times that of a small recipe ({small_s:.2f} s)", times, TIMES_AT_MOST, digits=2)
 

@@ -105,16 +105,16 @@ def _figures(bench: Bench, compound: str, run: Run, estimate_s: float, plan: dic
 
 def _missing(compound: str, run: Run, conditions: list[dict[str, str]]) -> Iterator[Figure]:
     """Yield whether the output names each condition without a row, and its reason."""
-    said = run.outcome.stderr.splitlines()
+    messages = run.outcome.stderr.splitlines()
     missing = [row for row in conditions if row["status"] != "ok"]
     named = 0
     for row in missing:
         where = _setpoints(row)
-        line = next((text for text in said if text.startswith(f"{where}: ")), "")
+        line = next((text for text in messages if text.startswith(f"{where}: ")), "")
         reason = line.removeprefix(f"{where}: ")
-        told = row["status"] in reason and row["reason"] in reason and len(reason) > len(row["status"])
-        named += told
-        yield holds(f"{compound}: missing {where}", told, reason or "not on stderr", "is named with its reason")
+        complete = row["status"] in reason and row["reason"] in reason and len(reason) > len(row["status"])
+        named += complete
+        yield holds(f"{compound}: missing {where}", complete, reason or "not on stderr", "is named with its reason")
     yield equal(f"{compound}: missing conditions that are named on stderr", named, len(missing))
 
 

@@ -32,7 +32,7 @@ def of_sets(count: int) -> Iterator[Figure]:
     low, high = COVERED
     for way in sets.WAYS:
         found = list(sets.drifts(way, count))
-        if not way.told:
+        if not way.separable:
             silent = sum(not one.apart for one in found)
             yield holds(f"sets, {way.name}: it cannot tell", silent == count, f"{silent} of {count}", f"all {count}")
             continue
@@ -49,15 +49,15 @@ def of_twins(seeds: int, jobs: int, ways: Sequence[str]) -> Iterator[Figure]:
     with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
         for one in pool.map(twin.carry_out, cases):
             found.append(one)
-            off = "" if one.covered or not one.told else "  OUTSIDE"
+            off = "" if one.covered or not one.stated else "  OUTSIDE"
             print(f"     {one.case.way}, seed {one.case.seed}: {one.sentence}{off}", flush=True)
     for way in ways:
         ours = [one for one in found if one.case.way == way]
         if way == "one wheel":
-            silent = sum(not one.told for one in ours)
+            silent = sum(not one.stated for one in ours)
             yield at_least(f"runs, {way}: it cannot tell, of {seeds}", silent, seeds, digits=0)
         else:
-            held = sum(one.told and one.covered for one in ours)
+            held = sum(one.stated and one.covered for one in ours)
             name = f"runs, {way}: interval holds the loss, of {seeds}"
             yield at_least(name, held, int(OF_SEEDS * seeds), digits=0)
 

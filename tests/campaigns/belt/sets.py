@@ -23,7 +23,7 @@ class Way:
     wheels: int
     each: int
     reserved: bool = False
-    told: bool = True
+    separable: bool = True
     """Whether belt and wheel can be separated."""
 
 
@@ -31,7 +31,7 @@ WAYS = (
     Way("six wheel changes, a reference each", 7, 1),
     Way("eight wheel changes, two references each", 9, 2),
     Way("a reserved wheel, 7 references", 1, 7, reserved=True),
-    Way("one wheel, 7 references", 1, 7, told=False),
+    Way("one wheel, 7 references", 1, 7, separable=False),
 )
 
 

@@ -55,7 +55,7 @@ class TwinFound:
     """The result of a run, and whether its interval contains the belt's true loss over as many metres."""
 
     case: TwinCase
-    told: bool
+    stated: bool
     sentence: str
     covered: bool
     over_m: float

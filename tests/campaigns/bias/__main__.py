@@ -120,10 +120,10 @@ def main(arguments: list[str] | None = None) -> int:
     with ProcessPoolExecutor(given.jobs, mp_context=get_context("spawn")) as pool:
         for case, each in pool.map(run, made):
             found += each
-            told = ", ".join(f"{one.cell.load_n} N{'' if one.cell.both else ' one way'} {one.percent:+.2f} %"
+            text = ", ".join(f"{one.cell.load_n} N{'' if one.cell.both else ' one way'} {one.percent:+.2f} %"
                              for one in each)  # fmt: skip
             side = "mirrored" if case.mirrored else "as drawn"
-            print(f"     seed {case.seed} {side}, {case.compound} {case.temperature_c} degC: {told}", flush=True)
+            print(f"     seed {case.seed} {side}, {case.compound} {case.temperature_c} degC: {text}", flush=True)
     places = len(only) if only else len(COMPOUNDS) * len(TEMPERATURES_C)
     missed = 0
     for figure in figures(found, 0 if given.hot else places * len(LOADS_N), whole=2 * seeds >= SESSIONS):

@@ -94,8 +94,8 @@ def twin(seeds: int, jobs: int) -> Iterator[Figure]:
     found: list[Held] = []
     for one in held(seeds, jobs):
         found.append(one)
-        told = f"off by {one.off_percent:+.2f} %, U {one.u_percent:.2f} %"
-        print(f"     seed {one.seed} {one.condition}: {told}", flush=True)
+        text = f"off by {one.off_percent:+.2f} %, U {one.u_percent:.2f} %"
+        print(f"     seed {one.seed} {one.condition}: {text}", flush=True)
     count = len(found)
     yield at_least("seeds with a value", count, 0.95 * seeds, digits=0)
     if count:

@@ -179,7 +179,7 @@ class Found:
 
 
 @dataclass(slots=True)
-class Told:
+class ProcessReports:
     """What a process reported before it was killed."""
 
     repeats: dict[Place, tuple[float, int]] = field(default_factory=dict[Place, tuple[float, int]])
@@ -190,7 +190,7 @@ class Told:
 
 def one_process(
     scenario: Scenario, recipe: Path, out: Path, folder: Path | None, kill_after_s: float | None
-) -> tuple[Told, float]:
+) -> tuple[ProcessReports, float]:
     """Start a process, kill it after a time (None: never); return its reports and when it was killed."""
     # A forked child has everything imported: the kill hits its measuring, not its start.
     method = "fork" if "fork" in multiprocessing.get_all_start_methods() else "spawn"
@@ -199,19 +199,19 @@ def one_process(
     process = context.Process(target=work, args=(there, scenario, str(recipe), str(out), str(folder or "")))
     process.start()
     there.close()
-    told = Told()
+    reports = ProcessReports()
     deadline = None if kill_after_s is None else clock.monotonic() + kill_after_s
-    killed = _listen(here, told, deadline)
+    killed = _listen(here, reports, deadline)
     if killed:
         assert process.pid is not None
         os.kill(process.pid, signal.SIGKILL)
     at = clock.monotonic()
-    _listen(here, told, None)  # earlier reports
+    _listen(here, reports, None)  # earlier reports
     process.join()
-    return told, at
+    return reports, at
 
 
-def _listen(pipe: Connection, told: Told, deadline: float | None) -> bool:
+def _listen(pipe: Connection, reports: ProcessReports, deadline: float | None) -> bool:
     """Receive reports until the deadline (True), or until the pipe is closed (False)."""
     while True:
         wait = None if deadline is None else deadline - clock.monotonic()
@@ -220,16 +220,16 @@ def _listen(pipe: Connection, told: Told, deadline: float | None) -> bool:
         if not pipe.poll(wait):
             return True
         try:
-            said = pipe.recv()
+            report = pipe.recv()
         except (EOFError, OSError):
             return False
-        match said:
+        match report:
             case ("repeat", place, mu, bursts):
-                told.repeats[place] = (mu, bursts)
+                reports.repeats[place] = (mu, bursts)
             case ("sample", path, rig_s, wall_s):
-                told.samples.append((path, rig_s, wall_s))
+                reports.samples.append((path, rig_s, wall_s))
             case ("end", code):
-                told.exit = code
+                reports.exit = code
 
 
 class Campaign:
@@ -246,11 +246,11 @@ class Campaign:
         while True:
             final = self.kills >= kills
             after_s = None if final else self.random.uniform(*delays_s)
-            told, at = one_process(self.scenario, self.recipe, self.out, folder, after_s)
-            self.known.update(told.repeats)
+            reports, at = one_process(self.scenario, self.recipe, self.out, folder, after_s)
+            self.known.update(reports.repeats)
             folder = _begun(self.out)
-            if told.exit is not None:
-                self.found.wrong_exits += told.exit != 0
+            if reports.exit is not None:
+                self.found.wrong_exits += reports.exit != 0
                 return folder
             if final:
                 self.found.wrong_exits += 1
@@ -261,12 +261,12 @@ class Campaign:
                 self.found.early += 1
                 shutil.rmtree(self.out, ignore_errors=True)
             else:
-                self._look(folder, told, at)
+                self._look(folder, reports, at)
 
-    def _look(self, folder: Path, told: Told, killed_at: float) -> None:
+    def _look(self, folder: Path, reports: ProcessReports, killed_at: float) -> None:
         found = self.found
         try:
-            self._samples(told, killed_at)
+            self._samples(reports, killed_at)
             recover(folder)
             with RunReader(folder) as reader:
                 found.unreadable += reader.integrity_problems()
@@ -280,14 +280,14 @@ class Campaign:
         except StoreError as error:
             found.unreadable.append(str(error))
 
-    def _samples(self, told: Told, killed_at: float) -> None:
+    def _samples(self, reports: ProcessReports, killed_at: float) -> None:
         """Determine the age of the oldest missing sample of the record written last."""
-        if not told.samples:
+        if not reports.samples:
             return
-        path = Path(told.samples[-1][0])
+        path = Path(reports.samples[-1][0])
         with RunReader(path) as reader:
             newest = max((block.columns["time_s"][-1] for block in reader.sample_blocks()), default=-1.0)
-        due = [wall_s for where, rig_s, wall_s in told.samples if where == str(path) and rig_s > newest]
+        due = [wall_s for where, rig_s, wall_s in reports.samples if where == str(path) and rig_s > newest]
         if due:
             self.found.missing_s = max(self.found.missing_s, killed_at - due[0])
 
@@ -338,8 +338,8 @@ def table_of(folder: Path) -> Table:
 def _undisturbed(scenario: Scenario, recipe: Path, out: Path) -> tuple[Table, float]:
     """Run a recipe without a kill; return its table and the wall time it took, s."""
     begun = clock.monotonic()
-    told, _ = one_process(scenario, recipe, out, None, None)
-    assert told.exit == 0, f"the undisturbed run ended with {told.exit}"
+    reports, _ = one_process(scenario, recipe, out, None, None)
+    assert reports.exit == 0, f"the undisturbed run ended with {reports.exit}"
     return table_of(next(out.iterdir())), clock.monotonic() - begun
 
 

@@ -66,15 +66,15 @@ def answer(far: int) -> None:
     """Answer until the standard input ends."""
     priority = RealTimePriority()
     try:
-        heard = 0
+        received = 0
         while True:
             ready, _, _ = select.select([far, sys.stdin], [], [])
             if sys.stdin in ready:
                 return
             now = clock.monotonic()
-            heard += len(os.read(far, 4096))
-            if heard >= len(REQUEST):
-                heard = 0
+            received += len(os.read(far, 4096))
+            if received >= len(REQUEST):
+                received = 0
                 clock.sleep_until(now + ANSWERS_AFTER_S)
                 os.write(far, REPLY)
     finally:
@@ -100,9 +100,9 @@ class Echo:
 
     def result(self) -> Echoed:
         """Wait for the end."""
-        said, _ = self._asking.communicate()
+        output, _ = self._asking.communicate()
         self.close()
-        return Echoed(**json.loads(said))
+        return Echoed(**json.loads(output))
 
     def close(self) -> None:
         """End both."""

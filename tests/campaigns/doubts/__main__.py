@@ -31,17 +31,17 @@ NOT_ASKED = "between, no references"
 TOPICS = {"steps": steps, "swings": swings, "steady": steady}
 
 
-def of_told(found: Sequence[Found]) -> Iterator[Figure]:
+def of_changes(found: Sequence[Found]) -> Iterator[Figure]:
     """Yield how many runs report each change of friction."""
     for topic, rig in dict.fromkeys((one.case.topic, one.case.rig) for one in found if one.case.topic != "steady"):
         ours = [one for one in found if (one.case.topic, one.case.rig) == (topic, rig)]
-        told = sum(one.told for one in ours)
+        reported = sum(one.reported for one in ours)
         words = Counter(doubt for one in ours for seen in one.conditions for doubt in set(seen.doubts))
-        text = f"{told} of {len(ours)}; doubts {dict(words.most_common(4))}"
+        text = f"{reported} of {len(ours)}; doubts {dict(words.most_common(4))}"
         if topic == NOT_ASKED:
             yield holds(f"{topic}, {rig}", True, text, "stated, not asked")
         else:
-            yield holds(f"{topic}, {rig}", told >= TOLD * len(ours), text, f"at least {TOLD:.0%}")
+            yield holds(f"{topic}, {rig}", reported >= TOLD * len(ours), text, f"at least {TOLD:.0%}")
 
 
 def of_steady(found: Sequence[Found]) -> Iterator[Figure]:
@@ -81,7 +81,7 @@ def main(arguments: list[str] | None = None) -> int:
         for one in pool.map(carry_out, cases):
             found.append(one)
             print(f"   {_line(one)}", flush=True)
-    figures = [*of_told(found), *of_steady(found)]
+    figures = [*of_changes(found), *of_steady(found)]
     odd = [one for one in found if one.code not in (0, 6)]
     figures.append(holds("runs that ended in order", not odd, f"{len(found) - len(odd)} of {len(found)}", "all"))
     for figure in figures:
@@ -91,14 +91,14 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _line(one: Found) -> str:
     case = one.case
-    said = "; ".join(
+    doubts = "; ".join(
         f"{seen.condition}: {', '.join(seen.doubts) or '-'} ({seen.change_percent:+.1f} %,"
         f" {seen.swing_percent:.1f} % at {seen.swing_hz:.1f} Hz)"
         for seen in one.conditions
         if seen.doubts or case.topic != "steady"
     )
     where = f" {case.condition}/{case.repeat}" if case.condition else f" {case.hz:.2f} Hz" if case.hz else ""
-    return f"{case.topic}, {case.rig}, seed {case.seed}{where}, exit {one.code}: {said or 'no doubts'}"
+    return f"{case.topic}, {case.rig}, seed {case.seed}{where}, exit {one.code}: {doubts or 'no doubts'}"
 
 
 if __name__ == "__main__":

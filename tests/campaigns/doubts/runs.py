@@ -43,7 +43,7 @@ class Found:
     conditions: tuple[Seen, ...] = field(default=())
 
     @property
-    def told(self) -> bool:
+    def reported(self) -> bool:
         """Return whether the run doubts the coefficients affected by the change of friction."""
         case = self.case
         if case.hz:

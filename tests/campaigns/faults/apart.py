@@ -32,10 +32,10 @@ def apart(work: Callable[[], Result]) -> Result:
     child = os.fork()
     if child == 0:
         try:
-            said = pickle.dumps((True, work()))
+            payload = pickle.dumps((True, work()))
         except BaseException:  # noqa: BLE001 - reported to the parent
-            said = pickle.dumps((False, format_exc()))
-        theirs.send_bytes(said)
+            payload = pickle.dumps((False, format_exc()))
+        theirs.send_bytes(payload)
         os._exit(0)
     theirs.close()
     try:

@@ -45,18 +45,18 @@ def text_of_first_trip(stage: Stage, one: Pulled, after_s: float = 0.0) -> str:
     began_s = stage.next_s + after_s
     for fault in one.faults:
         stage.inject(language_of(RECIPE).parse(f"t=0 s: {fault}").shifted(began_s))
-    heard: list[str] = []
+    alarms: list[str] = []
     ledger = stage.ledger
 
     def trip(t_s: float, interlock: str, text: str, value: float = nan, limit: float = nan, unit: str = "") -> int:
-        heard.append(f"{interlock}: {text}")
-        return len(heard)
+        alarms.append(f"{interlock}: {text}")
+        return len(alarms)
 
     ledger.trip = trip  # type: ignore[method-assign]
     while stage.next_s < began_s + LONGEST_S and not stage.run.finished:
         stage.tick()
-        if heard:
-            return heard[0]
+        if alarms:
+            return alarms[0]
     return ""
 
 

@@ -99,16 +99,16 @@ class Found:
     def text(self) -> str:
         """The finding in a line."""
         phrase, seen = self.row.kind.phrase, self.noticed_by or "nothing"
-        said = f"{phrase} towards {self.row.text(self.end).removeprefix(phrase).strip()} ({self.place}): "
+        line = f"{phrase} towards {self.row.text(self.end).removeprefix(phrase).strip()} ({self.place}): "
         if self.unnoticed is None:
-            said += f"none goes unnoticed ({seen})"
+            line += f"none goes unnoticed ({seen})"
         else:
-            said += f"unnoticed up to {self.row.text(self.unnoticed.value).removeprefix(phrase).strip()}"
-            said += f" ({self.unnoticed.does}), then {seen}"
+            line += f"unnoticed up to {self.row.text(self.unnoticed.value).removeprefix(phrase).strip()}"
+            line += f" ({self.unnoticed.does}), then {seen}"
         if self.harming is not None:
-            said += f"; HARM from {self.row.text(self.harming.value).removeprefix(phrase).strip()}"
-            said += f" ({'; '.join(self.harming.harm)}; {self.harming.noticed or 'unnoticed'})"
-        return said
+            line += f"; HARM from {self.row.text(self.harming.value).removeprefix(phrase).strip()}"
+            line += f" ({'; '.join(self.harming.harm)}; {self.harming.noticed or 'unnoticed'})"
+        return line
 
 
 def kind_of_place(phrase: str) -> str:
@@ -161,12 +161,12 @@ def attempt(row: Parametric, value: float, corner: str, place: tuple[str, str]) 
 def tried(stage: Stage, moment: Moment, order: Order) -> Trial:
     """Let a fault begin on this stage."""
     row, value = PARAMETRIC[order.phrase], order.value
-    began_s, said = process_time(), len(stage.ledger.journal)
+    began_s, first = process_time(), len(stage.ledger.journal)
     stage.observer.forget()
     case = Case(moment.recipe, moment.tick, moment.place, (row.text(value),))
     watched_s = _WATCHED_S[kind_of_place(row.kind.phrase)]
     verdict = Judge(stage, case, budgets=False, watched_s=watched_s).run()
-    stops = [text.partition(STOPPING)[2] for text in stage.ledger.journal[said:] if STOPPING in text]
+    stops = [text.partition(STOPPING)[2] for text in stage.ledger.journal[first:] if STOPPING in text]
     ended = next((why for why in stops if why != FINISHED), "")
     seen = stage.observer
     return Trial(

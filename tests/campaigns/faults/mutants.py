@@ -203,8 +203,8 @@ def hunt(mutant: Mutant | None, kind: str = "wheel_on_belt") -> tuple[str, str]:
             [sys.executable, "-m", "tests.campaigns.faults.mutants", "--probe", "--row", row, "--kind", kind],
             cwd=tree, env=environment, capture_output=True, text=True, check=False,
         )  # fmt: skip
-    said = (done.stdout.strip() or done.stderr.strip()).splitlines()
-    return mutant.name if mutant is not None else "unchanged", (said[-1] if said else "?") if done.returncode else ""
+    lines = (done.stdout.strip() or done.stderr.strip()).splitlines()
+    return mutant.name if mutant is not None else "unchanged", (lines[-1] if lines else "?") if done.returncode else ""
 
 
 def probe(row: str = "", kind: str = "wheel_on_belt") -> str:
@@ -232,9 +232,9 @@ def _after_trip(kind: str) -> str:
     """Check that every axis loses its power after trips."""
     from tests.campaigns.aftertrip import SAMPLE, judged
 
-    with redirect_stdout(StringIO()) as said:
+    with redirect_stdout(StringIO()) as output:
         met = judged(kind, SAMPLE[kind], AFTER_TRIP_CASES, 29)
-    return "" if met else said.getvalue().strip().splitlines()[-1].strip()
+    return "" if met else output.getvalue().strip().splitlines()[-1].strip()
 
 
 def _rows(only: str = "", kind: str = "wheel_on_belt") -> str:
@@ -280,9 +280,9 @@ def _late() -> str:
 
 def _first_contact() -> str:
     """Check that a wrong rotation ends the run at a wheel's first contact, and at a load that a hand can hold."""
-    with redirect_stdout(StringIO()) as said:
+    with redirect_stdout(StringIO()) as output:
         code = pytest.main(["-q", "-x", "-n", "0", "-p", "no:cacheprovider", "--no-header", FIRST_CONTACT])
-    failed = [line for line in said.getvalue().splitlines() if line.startswith(("FAILED", "ERROR"))]
+    failed = [line for line in output.getvalue().splitlines() if line.startswith(("FAILED", "ERROR"))]
     return (failed or ["the tests of the first contact could not run"])[0] if code else ""
 
 

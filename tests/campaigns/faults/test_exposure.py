@@ -56,10 +56,10 @@ def test_a_torn_belt_is_exposed_although_nothing_slides_on_it():
 
 @pytest.mark.parametrize("axis", ["wheel", "belt"])
 @pytest.mark.parametrize("off_m_s", [-0.15, 0.0, 0.15])
-def test_an_axis_that_runs_away_is_exposed_where_it_runs_at_another_speed_than_it_was_told(axis: str, off_m_s: float):
+def test_a_runaway_axis_is_exposed_where_its_speed_differs_from_its_command(axis: str, off_m_s: float):
     stage = sliding().copy()
-    told, radius_m = stage.rig.axes[axis].axis.value, 0.0005 * stage.rig.plant.diameter_mm
-    stage.inject(LANGUAGE.parse(f"t=0 s: {axis} runs away {told + off_m_s / (radius_m if axis == 'wheel' else 1.0):.6g}"
+    base, radius_m = stage.rig.axes[axis].axis.value, 0.0005 * stage.rig.plant.diameter_mm
+    stage.inject(LANGUAGE.parse(f"t=0 s: {axis} runs away {base + off_m_s / (radius_m if axis == 'wheel' else 1.0):.6g}"
                        f" {'rad/s' if axis == 'wheel' else 'm/s'}").shifted(stage.next_s))  # fmt: skip
     exposed = Exposed(stage, CATALOGUE[f"{axis} runs away"])
     assert not exposed.now()

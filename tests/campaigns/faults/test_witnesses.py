@@ -49,7 +49,7 @@ def presses(stage: Stage, fault: str, within_s: float) -> tuple[float, float]:
         ("load cell drift -1 N/s", 60.0),
     ],
 )
-def test_a_load_cell_that_goes_wrong_under_load_is_told(fault: str, within_s: float) -> None:
+def test_a_load_cell_fault_under_load_is_detected(fault: str, within_s: float) -> None:
     stage = held().copy()
     took_s, most_n = presses(stage, fault, within_s + 1.5)
     assert took_s <= within_s and most_n < 460.0 and not stage.observer.found

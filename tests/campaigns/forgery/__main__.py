@@ -9,7 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from tester.results.verify import verify
-from tests.campaigns.forgery.forge import FORGERIES, told
+from tests.campaigns.forgery.forge import FORGERIES, detected
 from tests.campaigns.forgery.run import finished_run
 
 
@@ -21,7 +21,7 @@ def main() -> int:
         found = verify(run)
         for problem in found.problems:
             print(f"the run itself: {problem}")
-        rows = [(one.name, *told(run, other, one, Path(home) / "forged")) for one in FORGERIES]
+        rows = [(one.name, *detected(run, other, one, Path(home) / "forged")) for one in FORGERIES]
     print(f"{'':40}  chain unmade        all made anew")
     print(f"{'forgery':40}  head kept  without  head kept  without")
     for name, *shown in rows:

@@ -151,7 +151,7 @@ def remake_all(folder: Path) -> None:
     write_all(folder)
 
 
-def told(run: Path, other: Path, forgery: Forgery, scratch: Path) -> tuple[bool, bool, bool, bool]:
+def detected(run: Path, other: Path, forgery: Forgery, scratch: Path) -> tuple[bool, bool, bool, bool]:
     """Forge a copy of a run; return whether it is detected: with the head kept, without; and both again after
     rebuilding everything."""
     head = verify(run).head

@@ -42,7 +42,7 @@ def of_shares(runs: Sequence[DiscRun]) -> Iterator[Figure]:
         yield at_least(f"rows whose {name} holds it", 100.0 * fmean(part.held for part in parts), 90.0, "%", 1)
 
 
-def said_of_widths(runs: Sequence[DiscRun]) -> Iterator[str]:
+def widths(runs: Sequence[DiscRun]) -> Iterator[str]:
     """Yield the widths of the shares' intervals beside their errors: for each class of rows, and for the means."""
     for low, high in CLASSES:
         rows = [row for run in runs for row in run.rows if low <= abs(row.warmer_k) < high]
@@ -83,10 +83,10 @@ def main(arguments: list[str] | None = None) -> int:
         for run in pool.imap(one_run, cases):
             seeds[run.seed][run.name] = run
             for mean in run.means if run.name == BASE else ():
-                told = f"share {mean.value:.4f} ± {mean.expanded:.4f}, put in {mean.truth:.4f}"
-                print(f"     seed {run.seed}, {mean.name}: {told}{'' if mean.held else ' OUTSIDE'}", flush=True)
+                text = f"share {mean.value:.4f} ± {mean.expanded:.4f}, put in {mean.truth:.4f}"
+                print(f"     seed {run.seed}, {mean.name}: {text}{'' if mean.held else ' OUTSIDE'}", flush=True)
     base = [runs[BASE] for runs in seeds]
-    for line in said_of_widths(base):
+    for line in widths(base):
         print(line)
     missed = 0
     for figure in (*of_shares(base), *of_trends(seeds)):

@@ -23,7 +23,7 @@ _NOT_HANDED_ON = frozenset(
 
 
 @dataclass(frozen=True, slots=True)
-class Told:
+class CommandResult:
     """A command's output on both streams, its exit code (None: it was terminated), and times in s."""
 
     code: int | None
@@ -67,13 +67,13 @@ def carry_out(
     folder: Path,
     *,
     until: Callable[[str], bool] | None = None,
-    heard: Callable[[str, float], None] | None = None,
+    on_output: Callable[[str, float], None] | None = None,
     cores: set[int] | None = None,
     **env: str,
-) -> Told:
+) -> CommandResult:
     """Run a shell command without a package cache; terminate it once ``until`` is true of its output so far.
 
-    ``heard``: called with each new piece of its output, and the time since its start (s). ``cores``: cores it may run
+    ``on_output``: called with each new piece of output, and the time since the start (s). ``cores``: cores it may run
     on.
     """
     environment = {key: value for key, value in os.environ.items() if key not in _NOT_HANDED_ON}
@@ -92,17 +92,17 @@ def carry_out(
         silence_s, last = max(silence_s, now - last), now
         piece = chunk.decode(errors="replace")
         text += piece
-        if heard is not None:
-            heard(piece, now - begun)
+        if on_output is not None:
+            on_output(piece, now - begun)
         if until is not None and until(text):
             os.killpg(process.pid, signal.SIGKILL)
             process.wait()
-            return Told(None, text, monotonic() - begun, 0.0, first_s, silence_s)
+            return CommandResult(None, text, monotonic() - begun, 0.0, first_s, silence_s)
     _, status, usage = os.wait4(process.pid, 0)
     process.returncode = os.waitstatus_to_exitcode(status)
     process.stdout.close()
     cpu_s = usage.ru_utime + usage.ru_stime
-    return Told(process.returncode, text, monotonic() - begun, cpu_s, first_s, silence_s)
+    return CommandResult(process.returncode, text, monotonic() - begun, cpu_s, first_s, silence_s)
 
 
 def pass_s(interpreter: Path) -> float:

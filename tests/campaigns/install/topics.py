@@ -14,7 +14,7 @@ from pathlib import Path
 from tests.campaigns.acceptance.figure import Figure, at_most, equal, holds
 from tests.campaigns.install.place import (
     PASS_S,
-    Told,
+    CommandResult,
     carry_out,
     fresh_copy,
     megabytes,
@@ -41,23 +41,24 @@ _DOTS = re.compile(r"^[.sxFE]", re.MULTILINE)
 def main_command(work: Path) -> Iterator[Figure]:
     """The README's main command, from the first keystroke to the table."""
     copy = fresh_copy(work / "main")
-    told = carry_out(readme_command("run quickstart --yes"), copy)
+    result = carry_out(readme_command("run quickstart --yes"), copy)
     unit = pass_s(copy / ".venv" / "bin" / "python")
     limit = CPU_AT_MOST_S * unit / PASS_S
-    note = f" ({told.cpu_s / unit:.0f} x `python3 -c pass`, {1e3 * unit:.1f} ms)"
-    yield equal("exit code", told.code, 0)
-    yield at_most("CPU time to the table", told.cpu_s, round(limit, 1), "s", 1, note=note)
-    yield told_only("wall time, downloads included", f"{told.wall_s:.0f} s; load {os.getloadavg()[0]:.1f}")
-    yield told_only("first output; longest silence", f"{told.first_s:.1f} s; {told.silence_s:.1f} s")
+    note = f" ({result.cpu_s / unit:.0f} x `python3 -c pass`, {1e3 * unit:.1f} ms)"
+    yield equal("exit code", result.code, 0)
+    yield at_most("CPU time to the table", result.cpu_s, round(limit, 1), "s", 1, note=note)
+    yield unjudged("wall time, downloads included", f"{result.wall_s:.0f} s; load {os.getloadavg()[0]:.1f}")
+    yield unjudged("first output; longest silence", f"{result.first_s:.1f} s; {result.silence_s:.1f} s")
     yield at_most("installed", megabytes(copy / ".venv"), INSTALLED_AT_MOST_MB, "MB", 0)
-    folder = told.text.rstrip().splitlines()[-1]
+    folder = result.text.rstrip().splitlines()[-1]
     table = copy / folder / "appendix.csv"
     yield holds("last line is the run's folder", table.is_file(), folder, "holds appendix.csv")
     lines = table.read_text(encoding="utf-8").splitlines() if table.is_file() else []
     yield equal("rows of that table", len(lines) - 1, 2)
-    rows = {match[1] for match in _ROW.finditer(told.text)}
+    rows = {match[1] for match in _ROW.finditer(result.text)}
     yield equal("loads in the table that is printed, with uncertainty (N)", sorted(rows), ["100", "200"])
-    yield holds("a command to try next", "\nnext: " in told.text, "named" if "\nnext: " in told.text else "no", "named")
+    named = "\nnext: " in result.text
+    yield holds("a command to try next", named, "named" if named else "no", "named")
     left = [path.name for path in copy.iterdir() if path.name in ("build", "dist", ".mypy_cache")]
     yield equal("left behind by the build", left, [])
 
@@ -70,11 +71,11 @@ def _begun(text: str) -> bool:
 def test_command(work: Path) -> Iterator[Figure]:
     """The README's test command, from the first keystroke to the first test's result."""
     copy, unit_s = fresh_copy(work / "tests"), _pass_before_s(work)
-    told = carry_out(readme_command("/pytest"), copy, until=_begun)
-    if told.code is not None:
-        yield holds("tests begin", False, without_warnings(told.text), "a test's result")
+    result = carry_out(readme_command("/pytest"), copy, until=_begun)
+    if result.code is not None:
+        yield holds("tests begin", False, without_warnings(result.text), "a test's result")
         return
-    yield _begins(unit_s, told.wall_s)
+    yield _begins(unit_s, result.wall_s)
 
 
 def whole_test_command(work: Path) -> Iterator[Figure]:
@@ -82,16 +83,16 @@ def whole_test_command(work: Path) -> Iterator[Figure]:
     copy, unit_s = fresh_copy(work / "tests"), _pass_before_s(work)
     so_far, first_s = "", inf
 
-    def heard(piece: str, at_s: float) -> None:
+    def on_output(piece: str, at_s: float) -> None:
         nonlocal so_far, first_s
         print(piece, end="", flush=True)
         if first_s == inf:
             so_far += piece
             first_s = at_s if _begun(so_far) else inf
 
-    told = carry_out(readme_command("/pytest"), copy, heard=heard)
-    yield equal("exit code", told.code, 0)
-    yield told_only("wall and CPU time", f"{told.wall_s:.0f} s, {told.cpu_s:.0f} s; load {os.getloadavg()[0]:.1f}")
+    result = carry_out(readme_command("/pytest"), copy, on_output=on_output)
+    yield equal("exit code", result.code, 0)
+    yield unjudged("wall and CPU time", f"{result.wall_s:.0f} s, {result.cpu_s:.0f} s; load {os.getloadavg()[0]:.1f}")
     yield _begins(unit_s, first_s)
 
 
@@ -134,16 +135,16 @@ def interpreters(work: Path) -> Iterator[Figure]:
     for version in VERSIONS:
         python = interpreter(version)
         if python is None:
-            yield told_only(f"Python {version}", "not on this machine")
+            yield unjudged(f"Python {version}", "not on this machine")
             continue
         copy = fresh_copy(work / f"python-{version}")
         command = f"{python} -m venv .venv && .venv/bin/pip install -q . && .venv/bin/tester run quickstart --yes"
-        told = carry_out(command, copy)
-        yield holds(f"Python {version}", told.code == 0, f"exit {told.code}, {told.cpu_s:.0f} s of CPU", "exit 0")
-        if told.code:
-            print(without_warnings(told.text))
+        result = carry_out(command, copy)
+        yield holds(f"Python {version}", result.code == 0, f"exit {result.code}, {result.cpu_s:.0f} s of CPU", "exit 0")
+        if result.code:
+            print(without_warnings(result.text))
         else:
-            tables[version] = (copy / told.text.rstrip().splitlines()[-1] / "appendix.csv").read_bytes()
+            tables[version] = (copy / result.text.rstrip().splitlines()[-1] / "appendix.csv").read_bytes()
     yield equal("different tables", len(set(tables.values())), 1)
 
 
@@ -158,16 +159,16 @@ def compiled(work: Path) -> Iterator[Figure]:
     for cores in (2, 1):
         load = os.getloadavg()[0]
         must(carry_out(f"python3 -m venv venv-{cores}", copy))
-        told = must(
+        result = must(
             carry_out(
                 f"venv-{cores}/bin/pip install -v --no-deps .", copy, cores=set(usable[:cores]),
                 FRICTION_TESTER_COMPILE="1",
             )
         )  # fmt: skip
-        took[cores] = told.wall_s
-        said = len(re.findall(r"friction-tester: ", told.text))
+        took[cores] = result.wall_s
+        lines = len(re.findall(r"friction-tester: ", result.text))
         name = f"cores: {cores}; wall, CPU, lines of progress"
-        yield told_only(name, f"{told.wall_s:.0f} s, {told.cpu_s:.0f} s, {said}; load before it {load:.1f}")
+        yield unjudged(name, f"{result.wall_s:.0f} s, {result.cpu_s:.0f} s, {lines}; load before it {load:.1f}")
         library = list((copy / f"venv-{cores}").rglob("friction_tester__mypyc*"))
         yield holds(f"compiled on {cores}", len(library) == 1, str(len(library)), "one library")
     yield at_most("two cores against one", took[2] / took[1], COMPILED_AT_MOST, "", 2)
@@ -180,11 +181,11 @@ def wheel(work: Path) -> Iterator[Figure]:
     """A compiled wheel: CPU time to build; used without a compiler, with a laboratory's own kind. Takes minutes."""
     copy = fresh_copy(work / "wheel")
     must(carry_out("python3 -m venv builder && python3 -m venv user", copy))
-    told = must(carry_out("builder/bin/pip wheel -v --no-deps -w dist .", copy, FRICTION_TESTER_COMPILE="1"))
+    result = must(carry_out("builder/bin/pip wheel -v --no-deps -w dist .", copy, FRICTION_TESTER_COMPILE="1"))
     unit = pass_s(copy / "user" / "bin" / "python")
     limit = round(BUILD_CPU_AT_MOST_S * max(1.0, unit / PASS_S), 1)
-    note = f" (wall {told.wall_s:.0f} s, load {os.getloadavg()[0]:.1f}, `python3 -c pass` {1e3 * unit:.1f} ms)"
-    yield at_most("CPU time to build", told.cpu_s, limit, "s", 1, note=note)
+    note = f" (wall {result.wall_s:.0f} s, load {os.getloadavg()[0]:.1f}, `python3 -c pass` {1e3 * unit:.1f} ms)"
+    yield at_most("CPU time to build", result.cpu_s, limit, "s", 1, note=note)
     (built,) = (copy / "dist").glob("*.whl")
     yield holds("wheel", "-py3-none-any" not in built.name, built.name, "for this platform")
     elsewhere = work / "elsewhere"
@@ -220,16 +221,16 @@ SAMPLE = ("main", "tests", "ways")
 """What takes two minutes together."""
 
 
-def told_only(name: str, value: str) -> Figure:
+def unjudged(name: str, value: str) -> Figure:
     """Return a figure without a limit."""
     return Figure(name, value, "no limit", True)
 
 
-def must(told: Told) -> Told:
+def must(result: CommandResult) -> CommandResult:
     """Return the command's result; raises ValueError with its last lines if it failed."""
-    if told.code:
-        raise ValueError(f"exit {told.code}: {without_warnings(told.text)}")
-    return told
+    if result.code:
+        raise ValueError(f"exit {result.code}: {without_warnings(result.text)}")
+    return result
 
 
 def interpreter(version: str) -> str | None:

@@ -36,11 +36,11 @@ def figures(values: list[Nonsense], runs: int, cases: int, jobs: int) -> Iterato
     """Yield the results of all values; ``runs``: how many of those that a file may have are tried in runs."""
     refusals = [(one, one.in_file()) for one in values]
     yield at_least("nonsense values over all keys", len(values), ASKED_FOR)
-    unplaced = [f"{one.text}: {said}" for one, said in refusals if said and not re.search(r"yaml:(?!1:1:)\d+:", said)]
+    unplaced = [f"{one.text}: {why}" for one, why in refusals if why and not re.search(r"yaml:(?!1:1:)\d+:", why)]
     yield equal("refusals without a place in the file", unplaced, [])
     wrong = [one.text for one in values if not overridable(one) and not one.by_override()]
     yield equal("described or loosened by --set on a real rig", wrong, [])
-    in_file = [one for one, said in refusals if not said]
+    in_file = [one for one, why in refusals if not why]
     accepted = [one for one in in_file if not one.at_start()]
     print(f"     {len(values) - len(in_file)} of {len(values)} refused in the file of a real rig,"
           f" {len(in_file) - len(accepted)} at a start: commissioned with other values", flush=True)  # fmt: skip

@@ -154,9 +154,9 @@ class Cases:
             value = (register.least + self.source.uniform(0.6, 1.0) * width) * factor
             with narrow.seat(lambda link: self._driver(link, {name: value})) as seat:
                 seat.run(SET_UP_S)
-                told = seat.driver.refused or ""
-                right = not self._believed(seat) and (name in told or "exception 3" in told)
-                self._judge("refuse", right, f"{name} {value:g}, which the device does not take: {told!r}")
+                refusal = seat.driver.refused or ""
+                right = not self._believed(seat) and (name in refusal or "exception 3" in refusal)
+                self._judge("refuse", right, f"{name} {value:g}, which the device does not take: {refusal!r}")
 
     def _refusal(self, name: str, value: float) -> str:
         """Return why the driver refuses a value, "" if it accepts it."""
@@ -172,10 +172,10 @@ class Cases:
         with self._seat(ready=False) as seat:
             self.place.slave.raises = dict.fromkeys(functions, code)
             seat.run(SET_UP_S)
-            told = seat.driver.refused
+            refusal = seat.driver.refused
             self._judge("refuse", not self._believed(seat), f"{what}: numbers are believed")
             if code not in PASSING:
-                self._judge("refuse", f"exception {code}" in (told or ""), f"{what}: {told!r}")
+                self._judge("refuse", f"exception {code}" in (refusal or ""), f"{what}: {refusal!r}")
                 return
             self.place.slave.raises = {}
             seat.run(SET_UP_S + LOSS_S)

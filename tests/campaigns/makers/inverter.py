@@ -60,7 +60,7 @@ class InverterSlave(FrameByFrame):
     def _power_up(self) -> None:
         self.values = {key: row[2] for key, row in ROWS.items()}
         self.state, self.nmt = "off", 127
-        self.taken, self.heard_s, self.cleared = b"", float("inf"), False
+        self.taken, self.heartbeat_s, self.cleared = b"", float("inf"), False
         self.beat_s = self.moved_s = 0.0
 
     # --- wire -----------------------------------------------------------------------------------------------------
@@ -77,7 +77,7 @@ class InverterSlave(FrameByFrame):
         elif can_id == 0x80 and self.nmt == 5:
             self._synchronise(now)
         elif can_id == 0x77F:
-            self.heard_s = now
+            self.heartbeat_s = now
 
     def receive(self, now: float) -> list[CanFrame]:
         """Return its frames."""
@@ -178,7 +178,7 @@ class InverterSlave(FrameByFrame):
         """Let the shaft turn until now, and watch the computer's heartbeat."""
         span, self.moved_s = now - self.moved_s, now
         watched = (self.values[0x1016, 1] & 0xFFFF) / 1000
-        if watched and self.nmt == 5 and now > self.heard_s + watched and self.state == "runs":
+        if watched and self.nmt == 5 and now > self.heartbeat_s + watched and self.state == "runs":
             self.state = {1: "fault", 2: "off", 3: "stops"}.get(self.values[0x6007, 0], "runs")
         word = self.values[0x6040, 0]
         runs = self.state == "runs" and self.values[0x6060, 0] == 2

@@ -50,9 +50,9 @@ def near(sets: int) -> Iterator[Figure]:
         found = [made(synthetic(seed, noise)) for seed in range(1 if noise == 0.0 else sets)]
         off = [one.collapse.ts_c - TS_C for one in found]
         worst = max(map(abs, off))
-        told = f"{np.mean(off):+.2f} +- {np.std(off):.2f} K" if noise else f"{off[0]:+.3f} K"
+        error = f"{np.mean(off):+.2f} +- {np.std(off):.2f} K" if noise else f"{off[0]:+.3f} K"
         yield (
-            f"Ts of {len(found)} sets, {100.0 * noise:g} % noise: {told}, worst {worst:.2f} K (asked: {most_k:g} K)",
+            f"Ts of {len(found)} sets, {100.0 * noise:g} % noise: {error}, worst {worst:.2f} K (asked: {most_k:g} K)",
             worst <= most_k,
         )
         missed = sum(one.judged.verdict is not Verdict.COLLAPSES for one in found)
@@ -81,11 +81,11 @@ def refused(sets: int) -> Iterator[Figure]:
     """Yield how often sets that do not collapse, and power laws, which determine no Ts, are recognised."""
     for name, how in FAILING.items():
         found = [made(synthetic(seed, FAILING_NOISE, **how)) for seed in range(sets)]  # type: ignore[arg-type]
-        told = sum(one.judged.verdict is Verdict.DOES_NOT for one in found)
-        yield f"{name}: {told} of {sets} do not collapse (asked: all)", told == sets
+        recognised = sum(one.judged.verdict is Verdict.DOES_NOT for one in found)
+        yield f"{name}: {recognised} of {sets} do not collapse (asked: all)", recognised == sets
     found = [made(synthetic(seed, FAILING_NOISE, power=0.2)) for seed in range(sets)]
-    told = sum(one.judged.verdict is Verdict.OPEN for one in found)
-    yield f"a power law: cannot tell, {told} of {sets} (asked: all)", told == sets
+    recognised = sum(one.judged.verdict is Verdict.OPEN for one in found)
+    yield f"a power law: cannot tell, {recognised} of {sets} (asked: all)", recognised == sets
 
 
 def made_up(sets: int, covered_sets: int) -> Iterator[Figure]:
@@ -103,16 +103,16 @@ def twin(seeds: int, jobs: int, *, sample: bool) -> Iterator[Figure]:
         for one in pool.map(measured, wanted):
             found.append(one)
             kind = "right thermometer" if one.unbiased else "everything on"
-            told = f"{one.rows} rows, Ts {one.ts_c:.2f} ({one.low_c:.2f} to {one.high_c:.2f}) degC, {one.verdict}"
-            print(f"     seed {one.seed}, {kind}: {told}", flush=True)
+            result = f"{one.rows} rows, Ts {one.ts_c:.2f} ({one.low_c:.2f} to {one.high_c:.2f}) degC, {one.verdict}"
+            print(f"     seed {one.seed}, {kind}: {result}", flush=True)
     for unbiased in (True, False):
         own = [one for one in found if one.unbiased is unbiased]
         if not own:
             continue
         name, n = "simulated runs, right thermometer" if unbiased else "simulated runs, everything on", len(own)
         off = [abs(one.off_k) if one.off_k == one.off_k else float("inf") for one in own]
-        told = sum(one.verdict == Verdict.COLLAPSES.value for one in own)
-        yield f"{name}: {told} of {n} collapse (asked: all)", told == n
+        collapsed = sum(one.verdict == Verdict.COLLAPSES.value for one in own)
+        yield f"{name}: {collapsed} of {n} collapse (asked: all)", collapsed == n
         if unbiased:
             near_enough = sum(one <= WITHIN_K for one in off)
             text = f"{name}: Ts within {WITHIN_K:g} K in {near_enough} of {n}, worst {max(off):.2f} K (asked: all)"

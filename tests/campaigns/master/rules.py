@@ -96,7 +96,7 @@ class Trial:
         return self.rows == (ROWS,) * len(TRACKS)
 
     @property
-    def told_apart(self) -> bool:
+    def told_from_glass(self) -> bool:
         """Return whether glass has the higher adhesion, and talc lowers the slower maximum much more than the other."""
         slow, fast = self.talc_left
         return self.glass_over_cloth > 1.0 and slow < MUCH * fast and fast < 1.0
@@ -241,7 +241,7 @@ def _judged(trials: Sequence[Trial], what: str) -> Iterator[Figure]:
     broken = sum(not holds for holds, _ in verdicts)
     text = f"{what}: rules told, {broken} of {len(verdicts)} broken: {right} right, {wrong} wrong"
     yield f"{text} (asked: {asked} right, none wrong)", right >= asked and wrong == 0
-    apart = sum(entry.told_apart for entry in trials)
+    apart = sum(entry.told_from_glass for entry in trials)
     worst = max((entry.talc_left[0] / entry.talc_left[1] for entry in trials), default=nan)
     text = f"{what}: glass has the higher adhesion, talc lowers the slower maximum much more: {apart} of {n}"
     yield f"{text}, worst {worst:.2f} of the faster one's share (asked: {least}, below {MUCH:g})", apart >= least
@@ -259,12 +259,12 @@ def figures(seeds: int, runs: int, jobs: int) -> Iterator[Figure]:
             for entry in pool.map(trial, [(seed, whole) for seed in range(count)]):
                 trials.append(entry)
                 off = ", ".join(f"{place.found - place.truth:+.2f}" for place in entry.places)
-                told = ", ".join(f"{verdict.value} ({'true' if holds else 'broken'})" for holds, verdict in entry.rules)
-                print(f"     {entry.name}: rows {entry.rows}, maxima {entry.maxima}, off {off} decades; {told}; talc"
+                text = ", ".join(f"{verdict.value} ({'true' if holds else 'broken'})" for holds, verdict in entry.rules)
+                print(f"     {entry.name}: rows {entry.rows}, maxima {entry.maxima}, off {off} decades; {text}; talc"
                       f" leaves {entry.talc_left[0]:.2f} and {entry.talc_left[1]:.2f}", flush=True)
             yield from _judged(trials, what)
-    arrhenius_told = sum(
+    likelier = sum(
         choice is not None and choice.likelier == "Arrhenius"
         for choice in (master_of(synthetic(seed, REPEAT, shift=arrhenius), REFERENCE_C).choice for seed in range(seeds))
     )
-    yield f"Arrhenius likelier where it is the truth: {arrhenius_told} of {seeds} (asked: all)", arrhenius_told == seeds
+    yield f"Arrhenius likelier where it is the truth: {likelier} of {seeds} (asked: all)", likelier == seeds

@@ -66,8 +66,8 @@ def agreed(mistakes: Sequence[Mistake], seeds: range) -> Figure:
 
 def unfounded(name: str, clean: Callable[[int], list[str]], seeds: range) -> Figure:
     """Return how many clean rigs have findings."""
-    said = {seed: found for seed in seeds if (found := clean(seed))}
-    value = [f"seed {seed}: {'; '.join(found)}" for seed, found in said.items()]
+    findings = {seed: found for seed in seeds if (found := clean(seed))}
+    value = [f"seed {seed}: {'; '.join(found)}" for seed, found in findings.items()]
     return equal(f"{len(seeds)} clean rigs: named by {name}", value, [])
 
 

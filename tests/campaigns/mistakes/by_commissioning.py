@@ -136,10 +136,10 @@ class Mistypes(TwinPerson):
     """Types a weight ten times too great, and again when asked."""
 
     def answer(self, question: Question) -> str:
-        said = super().answer(question)
+        right = super().answer(question)
         if question.key.endswith("hang z 200.0") or question.key.startswith("retype z"):
             return "2000"
-        return said
+        return right
 
 
 class Silences(TwinPerson):
@@ -164,8 +164,8 @@ class Uncalibrated(TwinPerson):
     """Reads the belt's ruler in centimetres."""
 
     def answer(self, question: Question) -> str:
-        said = super().answer(question)
-        return f"{0.1 * float(said):.3f}" if question.key.endswith("jog belt whole read") else said
+        right = super().answer(question)
+        return f"{0.1 * float(right):.3f}" if question.key.endswith("jog belt whole read") else right
 
 
 def _mistakes() -> tuple[Mistake, ...]:

@@ -13,7 +13,7 @@ import drivers.profiles
 from drivers.canopen.node_config import NodeChannel, NodeConfig
 from tester.doctor.finding import Severity
 from tests.campaigns.mistakes.mistake import Mistake
-from tests.campaigns.mistakes.written import Case, Rebuilt, Written, disagreement, read_list, said
+from tests.campaigns.mistakes.written import Case, Rebuilt, Written, disagreement, printed, read_list
 
 LIST: Final = Path(__file__).with_name("doctor.yaml")
 DRIVES: Final = ("wheel", "belt", "press", "sideslip", "camber")
@@ -51,7 +51,7 @@ def _looked(name: str, seed: int) -> tuple[list[str], str]:
     written, rebuilt = _BY_NAME[name]
     case = Case(written, seed, rebuilt)
     findings = case.findings()
-    return said(findings, Severity.NOTE), disagreement(findings, case.run())
+    return printed(findings, Severity.NOTE), disagreement(findings, case.run())
 
 
 def clean(seed: int) -> list[str]:
@@ -60,7 +60,7 @@ def clean(seed: int) -> list[str]:
     case = Case(written, seed)
     findings = case.findings()
     wrong = disagreement(findings, case.run())
-    return said(findings) + ([wrong] if wrong else [])
+    return printed(findings) + ([wrong] if wrong else [])
 
 
 def mistakes_of(entries: Sequence[Written], rebuilt: dict[str, Rebuilt] | None = None) -> tuple[Mistake, ...]:

@@ -70,9 +70,9 @@ class Wrong(TrackPerson):
         self.begins, self.wrong = begins, wrong
 
     def answer(self, question: Question) -> str:
-        said = super().answer(question)
+        right = super().answer(question)
         wrong = question.asks is Asks.QUANTITY and " ".join(words_of(question)).startswith(self.begins)
-        return f"{self.wrong(float(said)):.6g}" if wrong else said
+        return f"{self.wrong(float(right)):.6g}" if wrong else right
 
 
 class OtherWeights(TrackPerson):

@@ -101,21 +101,21 @@ class EchoingLine(WatchedLine):
         """``byte_s``: time of one byte on the line, s."""
         super().__init__()
         self._inner, self._byte_s = inner, byte_s
-        self._heard: list[tuple[float, bytes]] = []
+        self._echoes: list[tuple[float, bytes]] = []
         self._free_s = 0.0
 
     def write(self, data: bytes, now: float) -> None:
         """Send; the echo is complete when the line is free again."""
         self._free_s = max(self._free_s, now) + len(data) * self._byte_s
-        self._heard.append((self._free_s, data))
+        self._echoes.append((self._free_s, data))
         self._inner.write(data, now)
         self.tell(now, data, sent=True)
 
     def read(self, now: float) -> list[tuple[float, bytes]]:
         """Return echoes and replies up to ``now``, in the order of their arrival."""
-        heard = [one for one in self._heard if one[0] <= now]
-        self._heard = self._heard[len(heard) :]
-        read = sorted([*heard, *self._inner.read(now)], key=lambda chunk: chunk[0])
+        echoes = [one for one in self._echoes if one[0] <= now]
+        self._echoes = self._echoes[len(echoes) :]
+        read = sorted([*echoes, *self._inner.read(now)], key=lambda chunk: chunk[0])
         for at_s, data in read:
             self.tell(at_s, data, sent=False)
         return read
@@ -244,7 +244,7 @@ def _computer(changes: Mapping[str, Any]) -> FakeComputer:
     return computer
 
 
-def said(findings: Sequence[Finding], least: Severity = Severity.WARNING) -> list[str]:
+def printed(findings: Sequence[Finding], least: Severity = Severity.WARNING) -> list[str]:
     """Return the findings from a severity on as they are printed; by default warnings and faults."""
     return [str(finding) for finding in findings if finding.severity >= least]
 

@@ -28,9 +28,9 @@ def cpu_s(pid: int) -> float:
         with open(f"/proc/{pid}/stat", encoding="ascii") as file:  # noqa: PTH123 - no file
             fields = file.read().rpartition(")")[2].split()
     except OSError:
-        said = subprocess.run(["ps", "-o", "time=", "-p", str(pid)], capture_output=True, text=True, check=True).stdout
+        text = subprocess.run(["ps", "-o", "time=", "-p", str(pid)], capture_output=True, text=True, check=True).stdout
         seconds = 0.0
-        for part in said.strip().replace("-", ":").split(":"):
+        for part in text.strip().replace("-", ":").split(":"):
             seconds = 60.0 * seconds + float(part)
         return seconds
     return (int(fields[11]) + int(fields[12])) / TICKS_PER_S
@@ -38,8 +38,8 @@ def cpu_s(pid: int) -> float:
 
 def children(pid: int) -> list[int]:
     """Return the live child processes of a process."""
-    said = subprocess.run(["ps", "-eo", "pid=,ppid="], capture_output=True, text=True, check=True).stdout
-    pairs = [tuple(map(int, line.split())) for line in said.splitlines()]
+    output = subprocess.run(["ps", "-eo", "pid=,ppid="], capture_output=True, text=True, check=True).stdout
+    pairs = [tuple(map(int, line.split())) for line in output.splitlines()]
     return [child for child, parent in pairs if parent == pid]
 
 

@@ -113,7 +113,7 @@ class Observer:
     def __init__(self, client: Client, pid: int) -> None:
         """Listen from now on."""
         self.client, self.pid = client, pid
-        self.heard: list[tuple[float, Event]] = []
+        self.events_at: list[tuple[float, Event]] = []
         """With their times (tester.base.clock.monotonic)."""
         self._listening = asyncio.create_task(self._listen())
 
@@ -131,7 +131,7 @@ class Observer:
     async def _listen(self) -> None:
         async for message in self.client:
             if isinstance(message, Event):
-                self.heard.append((clock.monotonic(), message))
+                self.events_at.append((clock.monotonic(), message))
 
     @property
     def state(self) -> StateView:
@@ -151,7 +151,7 @@ class Observer:
         """Wait for an event after a moment and return its time; raises NotSeenError."""
         end_s = clock.monotonic() + within_s
         while clock.monotonic() < end_s:
-            for came_s, event in self.heard:
+            for came_s, event in self.events_at:
                 if came_s >= after_s and true(event):
                     return came_s
             await asyncio.sleep(LOOK_S / 5)

@@ -44,12 +44,12 @@ async def figures(seat: Seat, *, quick: bool) -> AsyncIterator[Figure]:
                     under_way = observer.state.mode != "OFFLINE"
                     pressed_s = screen.key(next(keys))
                     try:
-                        heard_s = await observer.stop_by_screen(pressed_s, "STOP at the service")
+                        received_s = await observer.stop_by_screen(pressed_s, "STOP at the service")
                     except NotSeenError:
                         lost += 1
                         continue
-                    taken_s.append(heard_s - pressed_s)
-                    in_run_s += [heard_s - pressed_s] if under_way else []
+                    taken_s.append(received_s - pressed_s)
+                    in_run_s += [received_s - pressed_s] if under_way else []
                 await observer.until(lambda state: state.mode == "OFFLINE", "the rig at a standstill", 60.0)
         finally:
             screen.close()

@@ -64,7 +64,7 @@ SAMPLED: Final = ("as believed", "hub capacity -25 %", "heater power -20 %", "lo
 """Lives of a sample. Each of the others learns a ratio that is near that of one of these."""
 
 
-class Heard(NullRecorder):
+class HeatRecorder(NullRecorder):
     """Stores a run's heat data and trips."""
 
     def __init__(self) -> None:
@@ -104,14 +104,14 @@ def live(name: str, seed: int) -> Life:
     quickstart = shipped.find("quickstart").read_text(encoding="utf-8")
     for number, text in enumerate((HOT, quickstart, HOT), start=1):
         ports, world, attendant = simulated_ports(twin, 10 * seed + number, None)
-        heard = Heard()
+        recorder = HeatRecorder()
         known = known_from(ratios, rig)
         plan = expand(load_recipe(text, PART, "heat.yaml").recipe, rig)
-        run = build_run(RunSetup(rig, plan, ports, attendant, heard, Prompts(automatic=True)), known)
+        run = build_run(RunSetup(rig, plan, ports, attendant, recorder, Prompts(automatic=True)), known)
         run_simulated(run, world, lapse=None, poll=lambda _now_s: None)
-        trips += (f"run {number}: {trip}" for trip in heard.trips)
-        if not heard.trips:
-            ratios += ratios_of(heard.heatings, rig)
+        trips += (f"run {number}: {trip}" for trip in recorder.trips)
+        if not recorder.trips:
+            ratios += ratios_of(recorder.heatings, rig)
     limits = rig.interlocks
     return Life(name, seed, tuple(trips), known, known.share(limits.heat_share, limits.heat_share_known))
 

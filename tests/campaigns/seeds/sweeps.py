@@ -58,16 +58,16 @@ class Sweeps:
 
     def plan(self, spec: SweepSpec) -> dict[str, object]:
         """Return the output of `tester plan --json` for a sweep's recipe. Raises SweepError."""
-        code, said = self._tester("plan", self._named(spec.recipe), "--json", *_set(spec))
+        code, output = self._tester("plan", self._named(spec.recipe), "--json", *_set(spec))
         if code:
-            raise SweepError(f"tester plan: exit {code}: {said[-400:]}")
-        return dict(json.loads(said))
+            raise SweepError(f"tester plan: exit {code}: {output[-400:]}")
+        return dict(json.loads(output))
 
     def _run(self, spec: SweepSpec) -> Swept:
         out = self._place("sweep")
         extent = ["--seeds", str(spec.seeds), "--seed", str(spec.first), "--jobs", str(self.jobs), "--out", str(out)]
-        code, said = self._tester("sweep", self._named(spec.recipe), *extent, *_set(spec))
-        lines = said.splitlines()
+        code, output = self._tester("sweep", self._named(spec.recipe), *extent, *_set(spec))
+        lines = output.splitlines()
         folder = self.folder / lines[-1] if lines else out
         if not (folder / "runs.csv").is_file():
             raise SweepError(f"tester sweep: exit {code}, no table")

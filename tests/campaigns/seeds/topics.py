@@ -81,8 +81,8 @@ def _table2(sweeps: Sweeps) -> Iterator[Figure]:
     yield at_most("table2: rows without a value for lack of stability", share, 0.1, "%", 2)
     for row in lost:
         where = f"{row['compound']}, {row['slip_velocity_mm_s']} mm/s, {row['load_n']} N, {row['sideslip_deg']} deg"
-        told = f"{where}, {row['temperature_c']} degC: {row['status']}: {row['reason']}"
-        yield holds(f"table2: seed {row['seed']}", True, told, "named")
+        text = f"{where}, {row['temperature_c']} degC: {row['status']}: {row['reason']}"
+        yield holds(f"table2: seed {row['seed']}", True, text, "named")
 
 
 def _table2_specs(full: bool) -> list[SweepSpec]:
@@ -120,13 +120,13 @@ def _estimate(sweeps: Sweeps) -> Iterator[Figure]:
     for name, text in ESTIMATED.items():
         spec = SweepSpec(text, 100 if sweeps.full and name == "quickstart" else seeds)
         plan = sweeps.plan(spec)
-        told, low, high = (float(str(plan[key])) for key in ("rig_seconds", "rig_seconds_low", "rig_seconds_high"))
+        planned_s, low, high = (float(str(plan[key])) for key in ("rig_seconds", "rig_seconds_low", "rig_seconds_high"))
         took = [float(run["rig_seconds"]) for run in sweeps.sweep(spec).runs[:seeds] if run["outcome"] == "done"]
         middle = median(took) if took else float("nan")
         inside = sum(low <= seconds <= high for seconds in took)
         within, total = within + inside, total + seeds
-        off = 100.0 * (middle / told - 1.0)
-        words = f"{middle:.0f} s against {told:.0f} s ({low:.0f} to {high:.0f}): {off:+.1f} %"
+        off = 100.0 * (middle / planned_s - 1.0)
+        words = f"{middle:.0f} s against {planned_s:.0f} s ({low:.0f} to {high:.0f}): {off:+.1f} %"
         # The thermometer's bias of a session moves a run by a third: the median of a few seeds means nothing.
         judged = seeds >= SEEDS_OF_A_MEDIAN
         limit = "within 5 %" if judged else "not judged: too few seeds"

@@ -54,18 +54,18 @@ def figures(found: list[SettingFound]) -> Iterator[Figure]:
     for changed in (False, True):
         ours = [one for one in found if one.case.changed is changed]
         whole = [one for one in ours if one.whole]
-        said = sum(one.disagrees for one in whole)
+        reported = sum(one.disagrees for one in whole)
         what = "friction changes by 8 %" if changed else "nothing changes"
         yield at_least(f"{what}: runs with four values, of {len(ours)}", len(whole), ceil(WHOLE * len(ours)))
         if changed:
-            yield at_least(f"{what}: reported, of {len(whole)}", said, ceil(SAID * len(whole)))
+            yield at_least(f"{what}: reported, of {len(whole)}", reported, ceil(SAID * len(whole)))
             right = sum(one.stands_out in (1, 2) for one in whole)
             yield at_least(f"{what}: a value of that wheel is named, of {len(whole)}", right, ceil(SAID * len(whole)))
             continue
         yield covered("U of a difference on one wheel holds it", [one.on_one for one in whole])
         yield covered("U of a difference between wheels holds it", [one.between for one in whole])
         allowed = alarms_allowed(len(whole))
-        yield holds(f"{what}: false alarms, of {len(whole)}", said <= allowed, str(said), f"at most {allowed}")
+        yield holds(f"{what}: false alarms, of {len(whole)}", reported <= allowed, str(reported), f"at most {allowed}")
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -84,8 +84,8 @@ def main(arguments: list[str] | None = None) -> int:
         found.append(one)
         what = "changed" if one.case.changed else "as it was"
         (off, u), (off_2, u_2) = one.on_one, one.between
-        told = f"{off:+.2f} ± {u:.2f} %, {off_2:+.2f} ± {u_2:.2f} % between, chi2 {one.chi2:.1f} of {one.limit:.1f}"
-        print(f"     seed {one.case.seed}, {what}: {told}{'  DISAGREES' if one.disagrees else ''}", flush=True)
+        text = f"{off:+.2f} ± {u:.2f} %, {off_2:+.2f} ± {u_2:.2f} % between, chi2 {one.chi2:.1f} of {one.limit:.1f}"
+        print(f"     seed {one.case.seed}, {what}: {text}{'  DISAGREES' if one.disagrees else ''}", flush=True)
     missed = 0
     for figure in figures(found):
         print(figure, flush=True)

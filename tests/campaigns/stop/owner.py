@@ -71,7 +71,7 @@ def note_stops(file: Path) -> None:
             self.desk.tell("command", f"stop by {name}", "warning")
         written.write("".join(f"{clock.monotonic()} done {one}\n" for one in names))
 
-    def heard(self: StopLane, line: str) -> None:
+    def recorded_take(self: StopLane, line: str) -> None:
         before = len(self._wishes)  # pyright: ignore[reportPrivateUsage]
         name = line.split(" ", 3)[-1]
         if not self.ticking:  # recorded before the answer: the receiver of the answer looks for the record
@@ -86,7 +86,7 @@ def note_stops(file: Path) -> None:
             written.write(f"{clock.monotonic()} kept {wish.name}\n")
         end(self)
 
-    Orders.stop, StopLane._take = stop, heard  # pyright: ignore[reportPrivateUsage]
+    Orders.stop, StopLane._take = stop, recorded_take  # pyright: ignore[reportPrivateUsage]
     StopLane.end_ticking = rested
 
 

@@ -98,7 +98,7 @@ def boot(job: Path) -> None:
         )
 
 
-def said(job: Path, name: str) -> str:
+def read(job: Path, name: str) -> str:
     """Return the contents of a file of the job, "" if it does not exist."""
     path = job / name
     return path.read_text(encoding="utf-8", errors="replace").strip() if path.exists() else ""
@@ -124,25 +124,25 @@ def _why(log: str) -> str:
 
 def figures(job: Path) -> Iterator[Figure]:
     """Yield the figures."""
-    failed = said(job, "failed") or ("" if said(job, "kernel") else f"no kernel: {_why(said(job, 'kernel.log'))}")
-    yield holds("kernel with a vcan", not failed, failed or said(job, "kernel"), "boots")
+    failed = read(job, "failed") or ("" if read(job, "kernel") else f"no kernel: {_why(read(job, 'kernel.log'))}")
+    yield holds("kernel with a vcan", not failed, failed or read(job, "kernel"), "boots")
     if failed:
         return
-    yield holds("link", "vcan" in said(job, "link"), said(job, "link").replace("\n", " ")[:100], "vcan0, up")
-    first = said(job, "first.err").splitlines()
-    tried = [f"{name} run {said(job, f'{name}.attempts')}" for name in ("first", "second")]
+    yield holds("link", "vcan" in read(job, "link"), read(job, "link").replace("\n", " ")[:100], "vcan0, up")
+    first = read(job, "first.err").splitlines()
+    tried = [f"{name} run {read(job, f'{name}.attempts')}" for name in ("first", "second")]
     yield holds("attempts until the host let the kernel keep its time", True, ", ".join(tried), "no limit")
-    yield equal("first run, exit code", said(job, "first.code"), "0")
-    if said(job, "first.code") != "0":
+    yield equal("first run, exit code", read(job, "first.code"), "0")
+    if read(job, "first.code") != "0":
         print("\n".join(first[:20]))
     mu, u = coefficient(job, "memory")
     other, other_u = coefficient(job, "first")
     yield at_most("coefficient off that in one process", abs(other - mu), math.hypot(u, other_u), digits=4)
-    trip = next((line for line in said(job, "second.err").splitlines() if line.startswith("tripped")), "no trip")
-    yield equal("run with a second master, exit code", said(job, "second.code"), "5")
+    trip = next((line for line in read(job, "second.err").splitlines() if line.startswith("tripped")), "no trip")
+    yield equal("run with a second master, exit code", read(job, "second.code"), "5")
     named = trip.startswith("tripped: second master")
     yield holds(f"its trip after cansend vcan0 {FOREIGN}", named, trip[:160], "second master")
-    yield holds("the simulated rig", True, said(job, "sim.err") or "silent", "no limit")
+    yield holds("the simulated rig", True, read(job, "sim.err") or "silent", "no limit")
 
 
 def main(arguments: list[str] | None = None) -> int:
