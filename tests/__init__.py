@@ -1,4 +1,4 @@
-"""Tests and campaigns. They find no settings of whoever starts them, and run about noon, whatever the hour."""
+"""Tests and campaigns. They ignore the user's settings and run at about noon local time."""
 
 from __future__ import annotations
 

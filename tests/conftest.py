@@ -1,4 +1,4 @@
-"""What holds for every test: campaigns run only when they are asked for, and the collector seldom looks for garbage."""
+"""Settings of every test: campaigns run only on request, and the garbage collector runs seldom."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ simulated run's CPU time [A]."""
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Leave out what is marked `campaign`, unless -m says what to run."""
+    """Skip tests marked `campaign` unless -m selects tests."""
     if not config.option.markexpr:
         config.option.markexpr = "not campaign"
     gc.set_threshold(YOUNG_OBJECTS, 20, 20)

@@ -17,7 +17,7 @@ from tests.campaigns.acceptance.topic import Topic
 from tests.campaigns.acceptance.topics import TOPICS
 
 QUICK = {name: TOPICS[name] for name in ("predict", "plan", "check", "startup")}
-"""Those that need no run; the others in their short form: ``python -m tests.campaigns.acceptance``."""
+"""Topics that need no run; the others in their short form: ``python -m tests.campaigns.acceptance``."""
 
 NAN = float("nan")
 

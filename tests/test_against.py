@@ -1,4 +1,4 @@
-"""What the comparison with an earlier tree reads: keys of files, keys that a schema allows, rows, what is lost."""
+"""The comparison with an earlier tree: keys of files, keys that a schema allows, rows, losses."""
 
 from __future__ import annotations
 

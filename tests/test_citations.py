@@ -1,4 +1,4 @@
-"""What the project cites is in the project, so that a reader can look it up: pages, files, modules and their names."""
+"""Everything the project cites exists in the project: pages, files, modules and their names."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ BARE = re.compile(r"(?<=`)(?!tester/|drivers/|sim/|tests/)[\w/]+\.py\b")
 
 
 def files() -> list[Path]:
-    """Return what people read: source, pages, recipes."""
+    """Return the texts for readers: source, pages, recipes."""
     found = [path for folder in SOURCES for path in (ROOT / folder).rglob("*") if path.suffix in ENDINGS]
     return [*found, *ROOT.glob("*.md"), *ROOT.glob("*.toml")]
 
@@ -50,7 +50,7 @@ def test_every_decision_has_one_section_and_is_in_the_list_of_all() -> None:
 
 
 def cited_wrongly(text: str) -> list[str]:
-    """Return the paths of documents, and the names of pages, in a text that nothing in the project answers to."""
+    """Return the paths of documents, and the names of pages, in a text that do not exist in the project."""
     names = {path.name for path in (*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md"))}
     return sorted(
         {path for path in PATHS.findall(text) if not is_there(path)}
@@ -79,7 +79,7 @@ def test_a_citation_of_a_page_is_none_of_those(text: str) -> None:
 
 
 def is_named(dotted: str) -> bool:
-    """Tell whether a dotted name leads to a module, to a name that stands in one, or to a key of the packaged rig."""
+    """Return whether a dotted name is a module, a name in one, or a key of the packaged rig."""
     parts = dotted.split(".")
     for length in range(len(parts), 0, -1):
         place = ROOT.joinpath(*parts[:length])
@@ -92,7 +92,7 @@ def is_named(dotted: str) -> bool:
 
 
 def is_key(parts: list[str]) -> bool:
-    """Tell whether a name is that of a key of a packaged rig file, such as ``sim.growth``."""
+    """Return whether a name is a key of a packaged rig file, such as ``sim.growth``."""
     return any(_is_key_of(place, parts) for place in (rig(), load_rig("grosch")))
 
 
@@ -105,7 +105,7 @@ def _is_key_of(place: object, parts: list[str]) -> bool:
 
 
 def led_nowhere(text: str) -> list[str]:
-    """Return the files, folders, modules and names of code in a text that are not there."""
+    """Return the missing files, folders, modules and names of code in a text."""
     known = ["/" + path.relative_to(ROOT).as_posix() for path in files()]
     return sorted(
         {path for path in FILES.findall(text) if not any(ROOT.glob(re.sub(r"<[^>]*>", "*", path)))}

@@ -21,7 +21,7 @@ def test_a_power_cut_loses_no_committed_repeat_and_leaves_the_run_readable(tmp_p
         pytest.skip(figures[0])
 
 
-@pytest.mark.campaign  # `python -m tests.campaigns.crash --sample` says the same
+@pytest.mark.campaign  # same as `python -m tests.campaigns.crash --sample`
 @pytest.mark.skipif(os.name != "posix", reason="kills by POSIX signals")
 def test_a_killed_run_is_resumed_where_it_was_and_ends_as_an_undisturbed_one(tmp_path: Path) -> None:
     figures = [str(figure) for figure in kills.measure(tmp_path, 5)]

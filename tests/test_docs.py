@@ -1,4 +1,4 @@
-"""Pages that lead somebody by the hand are followed word by word, and what they say happens."""
+"""Step-by-step pages, followed word by word, give the results they state."""
 
 from __future__ import annotations
 
@@ -29,14 +29,14 @@ SCRIPTING = DOCS / "how-to" / "script-against-the-service.md"
 STEP = re.compile(r"((?:<!-- .*? -->\n)+)```(\w+)\n(.*?)```", re.DOTALL)
 NOTE = re.compile(r"<!-- (.*?) -->")
 PRINTED = re.compile(r"^    (\S.*\d.*)$", re.MULTILINE)
-"""A line that a command has printed, with a figure in it."""
+"""A printed line with a figure in it."""
 LOOKS = 100
-"""A service is there after so many looks at the latest, each of some tenths of a second."""
+"""Maximum number of polls until a service is there, each of some tenths of a second."""
 TESTER = "from tester.cli.main import main; main()"
 
 
 def said_by(folder: Path, *arguments: str) -> str:
-    """Run `tester` in a folder; return all that it said."""
+    """Run `tester` in a folder; return all its output."""
     environment = {**os.environ, "PYTHONPATH": str(DOCS.parent), "TESTER_RUNTIME_DIR": str(folder / "runtime")}
     done = subprocess.run(
         [sys.executable, "-c", TESTER, *arguments],
@@ -46,13 +46,13 @@ def said_by(folder: Path, *arguments: str) -> str:
 
 
 class Reader:
-    """Somebody who does what a page says, in a folder."""
+    """A reader who follows a page in a folder."""
 
     def __init__(self, folder: Path) -> None:
         self.folder = folder
 
     def follow(self, notes: list[str], text: str) -> None:
-        """Do one step: write a file, change it, run a command and hold what it says against the page."""
+        """Do one step: write a file, change it, run a command and compare its output with the page."""
         said = ""
         for line in text.splitlines() if not any(note.endswith(".yaml") for note in notes) else ():
             said += said_by(self.folder, *shlex.split(line)[1:])
@@ -60,7 +60,7 @@ class Reader:
             self._note(note, text, said)
 
     def change(self, note: str) -> None:
-        """Edit a file as the page says."""
+        """Edit a file as the page asks."""
         edit = re.fullmatch(r'change (\S+): "(.*?)" to "(.*?)"', note)
         assert edit, note
         path = self.folder / edit[1]

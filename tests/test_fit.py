@@ -1,4 +1,4 @@
-"""What is asked of fits, over many synthetic sets of conditions."""
+"""Requirements on fits, over many synthetic sets of conditions."""
 
 from __future__ import annotations
 

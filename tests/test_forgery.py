@@ -1,4 +1,4 @@
-"""Twenty forgeries of a finished run: each is reported with the head kept, and without it where the chain is unmade."""
+"""Twenty forgeries of a finished run: each is reported with the head kept, and without it where the chain is broken."""
 
 from __future__ import annotations
 

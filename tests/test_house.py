@@ -1,4 +1,4 @@
-"""The counter of the tree's figures counts what it says."""
+"""The counter of the tree's figures counts correctly."""
 
 from __future__ import annotations
 

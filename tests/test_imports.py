@@ -1,4 +1,4 @@
-"""What a part loads: start-up stays quick, and the scan never drags a plotting or screen library in."""
+"""Modules that each part loads: start-up stays quick, and the scan never loads a plotting or screen library."""
 
 from __future__ import annotations
 

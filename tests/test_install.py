@@ -1,4 +1,4 @@
-"""How the installation is measured: what its command reads off the README and off an output."""
+"""How the installation is measured: what its command reads from the README and from an output."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Packages that serve every kind of machine have no word of one in their names; a class name stands once."""
+"""Packages that serve every kind of machine have no word of one in their names; each class name is unique."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from tester.kinds.wheel_on_belt.image.quantities import QUANTITIES
 
 ROOT = Path(__file__).parents[1]
 WORDS = ("wheel", "belt", "slip", "jacket", "hub", "camber")
-"""What only a wheel on a belt has; "sideslip" is found by "slip"."""
+"""Words only of a wheel on a belt; "sideslip" is found by "slip"."""
 EVERY_KIND_S = {TIME, *LAST, "surface_c"}
-"""Channels that the types name, too; a soak is told by the surface's temperature (tester.base.screen.SoakView)."""
+"""Channels that the types also name; the surface's temperature shows a soak (tester.base.screen.SoakView)."""
 CHANNELS = frozenset(QUANTITIES.names) - EVERY_KIND_S
-"""The others are read off the table, or by their roles in it."""
+"""The others come from the table, or from their roles in it."""
 KINDLESS = (
     "tester/results/catalogue",
     "tester/results",
@@ -37,7 +37,7 @@ NAMED_SO = ("tester/results/formats.py", "tester/store/record_schema.py")
 
 
 def names_in(tree: ast.AST) -> Iterator[tuple[int, str]]:
-    """Yield line and text of every name and string of a module; prose (docstrings) is none of them."""
+    """Yield line and text of every name and string of a module; docstrings are left out."""
     prose = {
         id(node.value) for node in ast.walk(tree) if isinstance(node, ast.Expr) and isinstance(node.value, ast.Constant)
     }
@@ -65,7 +65,7 @@ def names_in(tree: ast.AST) -> Iterator[tuple[int, str]]:
 
 
 def wheely(name: str) -> bool:
-    """Tell whether a name or a text is one of a wheel on a belt."""
+    """Return whether a name or a text is one of a wheel on a belt."""
     return name in CHANNELS or any(word in name.lower() for word in WORDS)
 
 

@@ -1,7 +1,7 @@
-"""What a system without POSIX can do: modules that Windows lacks are blocked, and the program is used as there.
+"""Use on a system without POSIX: modules that Windows lacks are blocked.
 
-It shows that nothing needs them before it says so; what Windows itself does with sockets, files and signals it cannot
-show. Untried there: docs/windows.md.
+It shows that nothing needs them without a clear error. It cannot show how Windows itself treats sockets, files and
+signals. Untried there: docs/windows.md.
 """
 
 from __future__ import annotations

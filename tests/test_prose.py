@@ -1,4 +1,4 @@
-"""The tree holds no phrase and no name that is never right; the finder finds them across lines, and no code."""
+"""The tree has no forbidden phrase or name; the finder reads across line breaks and skips code."""
 
 from __future__ import annotations
 

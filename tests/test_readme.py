@@ -1,4 +1,4 @@
-"""The README says what is so: its recipe checks, its commands exist, its two commands are whole."""
+"""The README is true: its recipe checks, its commands exist, its two commands are complete."""
 
 from __future__ import annotations
 

@@ -159,7 +159,7 @@ def test_an_unknown_topic_is_a_usage_error(capsys: pytest.CaptureFixture[str]) -
 
 
 def stand_in(monkeypatch: pytest.MonkeyPatch, *figures: Figure) -> None:
-    """Let the topic model give these figures without measuring."""
+    """Make the topic model return these figures without measuring."""
     monkeypatch.setattr(model, "measure", lambda effort: list(figures))
 
 

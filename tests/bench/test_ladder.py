@@ -39,7 +39,7 @@ def test_every_recipe_is_valid(recipe: Recipe) -> None:
 
 
 class Timed(Tree):
-    """A tree whose runs take what a table lists; the order of the runs is kept."""
+    """A tree whose runs take the times of a table; keeps the order of the runs."""
 
     order: ClassVar[list[str]] = []
 

@@ -1,4 +1,4 @@
-"""Shares of the compiled modules: their base, what is on the wrong side of the threshold, and what the lists hold."""
+"""Shares of the compiled modules: base, modules on the wrong side of the threshold, contents of the lists."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The promises: which ratio is judged by which limit, what is cut for a look, and what is skipped with its reason."""
+"""The promises: the limit of each ratio, the parts cut for a quick look, and the parts skipped with a reason."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from tester.kinds.wheel_on_belt.recipe.part import PART as WHEEL
 
 
 class Told(Tree):
-    """A tree whose runs take what is listed for its name; the options of the runs are kept."""
+    """A tree whose runs take the times listed for its name; keeps the options of the runs."""
 
     costs: ClassVar[dict[str, Cost]] = {}
     options: ClassVar[list[tuple[str, ...]]] = []

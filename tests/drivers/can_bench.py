@@ -12,7 +12,7 @@ from drivers.servo import ServoDrive
 
 NODE = 5
 
-# Sizes in bytes of the objects a bring-up touches, written down from CiA 301/402, not taken from our dictionary.
+# Sizes in bytes of the objects a bring-up touches, from CiA 301/402, not from our dictionary.
 SIZES = {
     0x1000: 4, 0x1001: 1, 0x1003: 4, 0x1006: 4, 0x1016: 4, 0x1017: 2, 0x1018: 4, 0x1029: 1, 0x1400: 4, 0x1401: 4,
     0x1600: 4, 0x1601: 4, 0x1800: 4, 0x1801: 4, 0x1A00: 4, 0x1A01: 4, 0x6007: 2, 0x603F: 2, 0x6040: 2, 0x6041: 2,

@@ -9,11 +9,11 @@ from drivers.ports import BusLost
 from drivers.profiles import Timing
 
 TIMING = Timing(turnaround_s=0.001, reply_max_s=0.008, retries=1)
-"""As the load cell: times out after 15.4 ms with 9 registers at 115200 bit/s."""
+"""Like the load cell: times out after 15.4 ms with 9 registers at 115200 bit/s."""
 
 
 class Line:
-    """Notes what is written."""
+    """Keeps what is written."""
 
     def __init__(self) -> None:
         self.sent: list[tuple[float, bytes]] = []
@@ -36,7 +36,7 @@ class Line:
 
 
 class Notes:
-    """A station's owner that notes what it hears."""
+    """A station's owner that keeps what it receives."""
 
     def __init__(self) -> None:
         self.replies: list[tuple[float, bytes]] = []
@@ -59,7 +59,7 @@ class Bench:
     """One link, one line, any number of stations."""
 
     def __init__(self, framing: str = "rtu", baud: int = 115200, *, known: bool = True) -> None:
-        """``known``: the adapter is known not to hear itself, and stations to answer as their timing says."""
+        """``known``: the adapter does not receive its own frames, and stations answer within their timing."""
         self.link = ModbusLink(framing, baud)  # type: ignore[arg-type]
         self.known = known
         if known:
@@ -96,5 +96,5 @@ def reply(*registers: int, unit_id: int = 1, function: int = 3) -> bytes:
 
 
 def refusal(code: int, unit_id: int = 1, function: int = 3) -> bytes:
-    """Return the RTU reply that refuses."""
+    """Return the RTU exception reply."""
     return with_crc(bytes((unit_id, function | 0x80, code)))

@@ -8,7 +8,7 @@ from sim.wires.modbus_wire import ModbusWire
 
 
 class Quantities:
-    """What the sensors see; tests set it."""
+    """The values at the sensors; tests set them."""
 
     def __init__(self) -> None:
         self.forces = (100.0, -20.0, 200.0, 0.5)
@@ -47,7 +47,7 @@ class Log:
 class Rig:
     """Link and wire in scans of ``period_s``; the link's deadlines are kept in between.
 
-    ``sparing``: the link is served, and the wire read, only when they say that there is something to do.
+    ``sparing``: serve the link and read the wire only when they report work to do.
     """
 
     def __init__(self, baud: int, *slaves: ModbusSlave, period_s: float = 0.01, sparing: bool = False) -> None:

@@ -1,4 +1,4 @@
-"""Records of live wires, replayed to the drivers: ports on which the other side answers as it did then.
+"""Records of live wires, replayed to the drivers: ports whose other side repeats its recorded answers.
 
 A record is a folder as `tester bus record` and `tester run --bus-log` write it: ``can.log`` (candump) and
 ``modbus-NAME.log``. Requests (SDO, Modbus) are answered when they are made again, after the time that the answer took
@@ -19,7 +19,7 @@ _SDO_REQUEST, _SDO_REPLY, _FUNCTION, _NODE = 0x600, 0x580, 0x780, 0x7F
 
 
 class RecordedCan(FrameByFrame):
-    """A CAN bus as it was."""
+    """A recorded CAN bus."""
 
     def __init__(self, path: Path) -> None:
         """Read a candump log."""
@@ -41,7 +41,7 @@ class RecordedCan(FrameByFrame):
         self._frames.sort()
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
-        """Take a frame: an SDO request gets the answer that it got then."""
+        """Take a frame: an SDO request gets its recorded answer."""
         self.tell_sent(can_id, data, now)
         if can_id & _FUNCTION != _SDO_REQUEST:
             return
@@ -62,7 +62,7 @@ class RecordedCan(FrameByFrame):
 
 
 class RecordedLine(WatchedLine):
-    """A Modbus line as it was."""
+    """A recorded Modbus line."""
 
     def __init__(self, path: Path) -> None:
         """Read a log of one line."""
@@ -80,7 +80,7 @@ class RecordedLine(WatchedLine):
                 self._answers[asked[1]].append((t - asked[0], data))
 
     def write(self, data: bytes, now: float) -> None:
-        """Take a request: it gets the answer that it got then, the last one again and again."""
+        """Take a request: it gets its recorded answer; the last answer repeats."""
         self.tell(now, data, True)
         answers = self._answers.get(data)
         if not answers:

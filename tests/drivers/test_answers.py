@@ -1,4 +1,4 @@
-"""What came in answer to a request: over TCP, on a serial line, on one that hears itself."""
+"""Answers to a request: over TCP, on a serial line, on a line with echo."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from tests.drivers.modbus_bench import reply
 
 
 class Owner:
-    """Hears nothing."""
+    """Receives nothing."""
 
     def received(self, request: Request, data: bytes, t: float) -> None: ...
 

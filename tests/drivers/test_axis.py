@@ -1,4 +1,4 @@
-"""What an axis configuration refuses, and how a diagnosis reads."""
+"""Refused axis configurations, and the text of a diagnosis."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The CAN master: what goes out in which order, where frames go, when it wants to be served."""
+"""The CAN master: order of its frames, where received frames go, when it wants service."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ HEARTBEAT: tuple[int, bytes] = (0x77F, b"\x05")
 
 
 class Recorder(FrameByFrame):
-    """A CanPort that keeps what is sent."""
+    """A CanPort that keeps sent frames."""
 
     def __init__(self) -> None:
         self.frames: list[tuple[int, bytes]] = []

@@ -7,7 +7,7 @@ from drivers.ports import CanFrame, FrameByFrame
 
 
 class Bus(FrameByFrame):
-    """A bus on which somebody else writes the answers."""
+    """A bus whose answers a test writes."""
 
     def __init__(self) -> None:
         super().__init__()

@@ -16,7 +16,7 @@ PROFILE = load_profile("climate_chamber")
 
 
 class Air:
-    """What the chamber's sensor sees."""
+    """The value at the chamber's sensor."""
 
     def __init__(self) -> None:
         self.air_c = 23.0
@@ -33,7 +33,7 @@ def rig() -> tuple[Rig, TemperatureController, ControllerSlave, Air]:
 
 
 class Command:
-    """What an engine does in every scan."""
+    """Do an engine's work of one scan."""
 
     def __init__(self, chamber: TemperatureController, celsius: float) -> None:
         self.chamber, self.celsius = chamber, celsius

@@ -1,4 +1,4 @@
-"""The data sheet in the package is the one the dictionary gives, and others can read it."""
+"""The packaged data sheet matches the dictionary, and other programs can read it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A load cell of several transmitters: what makes a whole reading, and who is to blame where there is none."""
+"""A load cell of several transmitters: when a reading is complete, and which transmitter is named where it is not."""
 
 from __future__ import annotations
 
@@ -14,11 +14,11 @@ CHANNELS = ("fx", "fy", "fz", "mz")
 LAUMAS = load_profile("laumas_tlb")
 KG_N = 9.80665
 ORIGIN_S = 1.0
-"""When a test begins: every transmitter is set up and has been read once."""
+"""Time at which a test begins: every transmitter is set up and was read once."""
 
 
 class Build:
-    """Three Laumas on one line; ``answer`` plays the one that is asked."""
+    """Three Laumas on one line; ``answer`` plays the transmitter that was asked."""
 
     def __init__(self, most_skew_s: float = 0.03, baud: int = 115200) -> None:
         self.bench = Bench(baud=baud)
@@ -32,7 +32,7 @@ class Build:
             self.answer(0.006 * (number - 5), 0.0)
 
     def answer(self, at_s: float, kg: float, status: int = 0) -> int:
-        """Answer what was asked last with a weight, at ``at_s`` after ORIGIN_S; return which was asked."""
+        """Answer the last request with a weight, at ``at_s`` after ORIGIN_S; return which was asked."""
         unit_id = self.bench.frames[-1][0]
         data = reply(status, 0, round(100.0 * kg), unit_id=unit_id)
         self.bench.serve(ORIGIN_S + at_s + 0.003, (ORIGIN_S + at_s, data), scan=False)
@@ -77,7 +77,7 @@ def test_a_transmitter_that_falls_silent_is_named_and_the_reading_gets_old() -> 
     build = Build()
     build.round(0.006)
     now = 0.021
-    while now < 0.2:  # the second answers no more: its requests time out
+    while now < 0.2:  # the second stops answering: its requests time out
         now += 0.003
         if build.bench.frames[-1][0] == 2:
             build.bench.serve(ORIGIN_S + now, scan=False)

@@ -1,4 +1,4 @@
-"""An RS-485 adapter that hears itself: recognised by the first read, its echo taken off, no write confirmed by it."""
+"""An RS-485 adapter with echo: the first read detects it, the echo is removed and never confirms a write."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ DONE_TWO = with_crc(bytes.fromhex("011000100002"))
 
 
 def reading() -> tuple[Bench, Request]:
-    """Return a bench of which nothing is known, whose read of two registers was sent at 0."""
+    """Return a bench with an unknown adapter whose read of two registers was sent at 0."""
     bench = Bench(known=False)
     request = bench.link.read(bench.station(), 3, 0, 2, 1.0)
     bench.link.enable(request)
@@ -25,7 +25,7 @@ def reading() -> tuple[Bench, Request]:
 
 
 def writing(*, values: tuple[int, ...] = (1,)) -> tuple[Bench, Request]:
-    """Return a bench on an adapter that hears itself, after a write was sent at 0.1."""
+    """Return a bench on an adapter with echo, after a write was sent at 0.1."""
     bench, read = reading()
     bench.serve(0.02, (0.01, READ + reply(1, 2)), scan=False)
     function, address = (6, 200) if len(values) == 1 else (16, 16)

@@ -133,7 +133,7 @@ def test_a_line_that_cannot_be_begun_anew_is_lost_by_a_doubt() -> None:
 
 
 class SerialStub:
-    """A line that has no connection to open anew."""
+    """A line without a connection to reopen."""
 
     def write(self, data: bytes, now: float) -> None: ...
 
@@ -233,7 +233,7 @@ def test_without_retries_the_next_attempt_waits_for_its_period() -> None:
 
 
 def starve(bench: Bench, until: float) -> None:
-    """Serve the link at its own deadlines, and answer nothing."""
+    """Serve the link at its own deadlines without answers."""
     now = 0.0
     while now < until:
         now = min(max(bench.link.deadline, now + 0.0005), now + 0.01)

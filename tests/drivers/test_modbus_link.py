@@ -183,7 +183,7 @@ def test_a_tick_that_came_late_still_takes_the_reply() -> None:
     bench.serve(0.0)
     bench.serve(0.2, (0.2, reply(*NINE)))
     assert request.station.counters.timeouts == 0
-    # ... but the reading is no newer than the time-out.
+    # ... but the reading is not newer than the time-out.
     assert bench.notes.replies[0][0] == pytest.approx(request.timeout_s)
 
 

@@ -1,4 +1,4 @@
-"""Registers asked for one question at a time, by bytes."""
+"""Registers read one request at a time, byte by byte."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from drivers.ports import WatchedLine
 
 
 class Line(WatchedLine):
-    """A line on which somebody else writes the answers."""
+    """A line whose answers a test writes."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -96,7 +96,7 @@ def test_an_answer_to_an_earlier_question_is_not_taken_for_this_ones() -> None:
     line, scan = asked()
     scan.service(line, 0.2)
     scan.ask(RegisterQuestion(1, 3, 200, 1), 0.1)
-    scan.feed([(0.2, GOOD)], 0.2)  # late: it comes before the next question is sent
+    scan.feed([(0.2, GOOD)], 0.2)  # late: it arrives before the next request is sent
     scan.service(line, 0.2)
     assert scan.answer is None
     assert len(line.sent) == 1

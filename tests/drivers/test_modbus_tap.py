@@ -1,4 +1,4 @@
-"""Frames of a line that others talk on: where each ends, and who sent it."""
+"""Frames of a line used by others: where each ends, and which side sent it."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ TALK = [
     (READ, True), (ANSWER, False), (WRITE_ONE, True), (WRITE_ONE, False), (WRITE_MANY, True), (WRITTEN, False),
     (READ, True), (REFUSED, False), (READ, True), (READ, True), (ANSWER, False),
 ]  # fmt: skip
-"""The last request but one stays without an answer."""
+"""The last request but one gets no answer."""
 
 
 @pytest.mark.parametrize("seed", range(20))

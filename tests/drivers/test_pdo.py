@@ -1,4 +1,4 @@
-"""PDO maps: bytes, parameters, what cannot be mapped."""
+"""PDO maps: bytes, parameters, objects that cannot be mapped."""
 
 from __future__ import annotations
 

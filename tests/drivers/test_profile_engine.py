@@ -155,7 +155,7 @@ def test_what_was_set_up_is_read_again_after_a_reply_that_did_not_come() -> None
     made.wire.impair = Impairment("silence", count=1)
     made.run(0.5)
     assert one.fresh(made.now)
-    slave.put(30, bytes((0, 9)))  # it has begun anew
+    slave.put(30, bytes((0, 9)))  # it has restarted
     made.run(0.5)
     assert one.fresh(made.now)
     made.wire.impair = Impairment("silence", count=1)

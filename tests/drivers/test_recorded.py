@@ -1,4 +1,4 @@
-"""A record of the digital rig, replayed to the drivers, and what becomes of one that lacks an answer."""
+"""A record of the digital rig, replayed to the drivers, also with an answer missing."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tester.machine.rig_ports import Ports
 from tests.drivers.recorded import RecordedCan, RecordedLine
 
 RECORD = Path(__file__).parent / "records" / "digital_rig"
-"""The first 2.2 s of a run on the digital rig, by its --bus-log: every device configured and heard."""
+"""The first 2.2 s of a run on the digital rig, by its --bus-log: every device configured and received."""
 STEP_S = 0.005
 
 

@@ -14,7 +14,7 @@ NINE = tuple(range(9))
 
 
 def measured(*held_s: float) -> tuple[Bench, Request]:
-    """Return a bench on which every reply came this much after the wire was done."""
+    """Return a bench on which every reply came this long after the request's last bit."""
     bench = Bench(known=False)
     request = bench.link.read(bench.station(), 3, 0, 9, 0.0)
     bench.link.enable(request)

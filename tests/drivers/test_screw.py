@@ -1,4 +1,4 @@
-"""What is known of a press's screw, and what follows for its torque."""
+"""Facts of a press's screw, and the torque that follows from them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A servo drive scan by scan: what the statusword and the commands make of RPDO1, and TPDO1 of the readings."""
+"""A servo drive scan by scan: RPDO1 from statusword and commands, readings from TPDO1."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Data sheets of drives: read, and held against what an axis needs."""
+"""Data sheets of drives: read, and checked against the needs of an axis."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ SHEETS = Path(__file__).parent / "eds"
 
 
 def changed(sheet: DataSheet, key: tuple[int, int], **values: object) -> DataSheet:
-    """Return a sheet with another entry; without values the entry is gone."""
+    """Return a sheet with another entry, or without it where no values are given."""
     objects = dict(sheet.objects)
     entry = objects.pop(key)
     if values:

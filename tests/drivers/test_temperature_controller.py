@@ -47,7 +47,7 @@ def rig() -> tuple[Rig, TemperatureController, ControllerSlave, Quantities]:
 
 
 class Command:
-    """What an engine does in every scan."""
+    """Do an engine's work of one scan."""
 
     def __init__(self, jacket: TemperatureController, celsius: float) -> None:
         self.jacket = jacket

@@ -1,8 +1,8 @@
-"""How many files it takes to add a thing: by a maintainer inside the product, by a stranger beside it.
+"""How many files an addition takes: by a maintainer inside the product, by a user outside it.
 
 Inside: the source files that name a given axis of a condition, or a given channel, are those that one more would touch.
 A name counts wherever a program sees it, as an identifier or in a text; prose (comments, docstrings) does not. Beside:
-the files of each example in ``tests/extension/examples``, all of which stand outside the product.
+the files of each example in ``tests/extension/examples``, which are all outside the product.
 ``python -m tests.extension.counts`` prints the files, and fails where there are more than there are to be.
 """
 
@@ -17,14 +17,14 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
 FROZEN = ("tester/kinds/wheel_on_belt/papers/machine.py",)
-"""Files that a new axis or channel leaves alone: what a published paper states."""
+"""Files that a new axis or channel does not change: values from a published paper."""
 SOURCES = ("tester", "drivers", "sim", "recipes")
 _DOCUMENTED = (ast.Module, ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)
 
 
 @dataclass(frozen=True, slots=True)
 class Count:
-    """A name to be counted: what it is, and in how many files it may stand at most."""
+    """A name to be counted: its meaning, and the maximum number of files with it."""
 
     what: str
     name: str
@@ -36,11 +36,11 @@ COUNTS = (Count("axis", "camber", 9), Count("channel", "moment_z_nm", 8))
 
 EXAMPLES = ROOT / "tests" / "extension" / "examples"
 AT_MOST = {"sensor": 3, "drive": 3, "axis": 2, "interlock": 1, "format": 2, "law": 1, "kind": 15}
-"""Files of an example, by its folder: an axis stands inside a kind, an interlock with its fault."""
+"""Files of an example, by its folder: an axis is inside a kind, an interlock is with its fault."""
 
 
 def files_of(example: str) -> list[Path]:
-    """Return the files of an example; what Python has compiled is none."""
+    """Return the files of an example, without compiled Python."""
     found = (EXAMPLES / example).rglob("*")
     return sorted(path.relative_to(EXAMPLES) for path in found if path.is_file() and path.suffix != ".pyc")
 
@@ -67,7 +67,7 @@ def words_in(source: str) -> Iterator[str]:
 
 
 def files_naming(name: str, root: Path = ROOT) -> list[Path]:
-    """Return the source files in which a name stands, alone or as a part of a longer one (``camber_deg``)."""
+    """Return the source files with a name, alone or as a part of a longer one (``camber_deg``)."""
     wanted = re.compile(rf"(?<![a-z]){re.escape(name)}(?![a-z])", re.IGNORECASE)
     found: list[Path] = []
     for folder in SOURCES:
@@ -81,7 +81,7 @@ def files_naming(name: str, root: Path = ROOT) -> list[Path]:
 
 
 def main() -> int:
-    """Print what was counted; return 1 where a count is above its bound."""
+    """Print the counts; return 1 where a count is above its bound."""
     missed = False
     for count in COUNTS:
         files = files_naming(count.name)

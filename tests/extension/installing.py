@@ -1,4 +1,4 @@
-"""Have an example found as an installed package is: its folder on sys.path, and beside it what pip writes of it."""
+"""Make an example importable like an installed package: its folder on sys.path, and pip's metadata beside it."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def describe(project: Path, site: Path) -> None:
 
 @contextmanager
 def installed(example: str, site: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """Have an example installed within the block; its modules are forgotten afterwards. ``site``: an empty folder."""
+    """Install an example within the block; its modules are unloaded afterwards. ``site``: an empty folder."""
     folder = EXAMPLES / example
     if (folder / "pyproject.toml").exists():
         describe(folder / "pyproject.toml", site)

@@ -1,4 +1,4 @@
-"""A laboratory's axis: a kind of its own that is the wheel's with one axis more, held by a person."""
+"""A laboratory's axis: a kind that adds one axis, set by a person, to the wheel's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The count of files that name an axis or a channel: what it counts, and that it does not grow."""
+"""The count of files that name an axis or a channel: its rules, and its upper bounds."""
 
 from __future__ import annotations
 
@@ -9,7 +9,7 @@ import pytest
 from tests.extension.counts import AT_MOST, COUNTS, EXAMPLES, Count, files_naming, files_of, main, words_in
 
 NOW = {"camber": 3, "moment_z_nm": 4}
-"""Files at present: a further one is to be asked for."""
+"""Files at present: ask before you add another."""
 
 
 @pytest.mark.parametrize("count", COUNTS, ids=[count.name for count in COUNTS])

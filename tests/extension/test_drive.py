@@ -111,4 +111,4 @@ def test_a_rig_is_the_same_by_whatever_path_its_file_is_named(tmp_path: Path, mo
     (tmp_path / "rig.yaml").write_text(rig_text("own.toml"), encoding="utf-8")
     shutil.copy(PROFILE, tmp_path / "own.toml")
     monkeypatch.chdir(tmp_path)
-    assert load_rig("rig.yaml").text == load_rig(tmp_path / "rig.yaml").text  # else a run is not resumed
+    assert load_rig("rig.yaml").text == load_rig(tmp_path / "rig.yaml").text  # otherwise a run is not resumed

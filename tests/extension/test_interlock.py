@@ -1,4 +1,4 @@
-"""A laboratory's interlock: a kind of its own that is the wheel's with one row more."""
+"""A laboratory's interlock: a kind that adds one row to the wheel's."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The how-to pages say what the examples hold, word for word."""
+"""The how-to pages quote the examples word for word."""
 
 from __future__ import annotations
 

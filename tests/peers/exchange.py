@@ -1,4 +1,4 @@
-"""Our Modbus link on a TCP connection to a server that nobody here wrote."""
+"""Our Modbus link on a TCP connection to a third-party server."""
 
 from __future__ import annotations
 

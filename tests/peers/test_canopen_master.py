@@ -1,4 +1,4 @@
-"""PyPI canopen as the master of our simulated drive: what nobody here wrote must find a CiA 402 drive on the wire.
+"""PyPI canopen as the master of our simulated drive: a third-party master must find a CiA 402 drive on the wire.
 
 canopen talks to python-can; the bus below is python-can's interface over the simulated wire. Every frame it sends lets
 a few milliseconds of virtual time pass and hands over what the drive sent in them, so nothing waits and no thread runs.

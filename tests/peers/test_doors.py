@@ -1,4 +1,4 @@
-"""The simulated rig's doors as programs that nobody here wrote see them: python-can, pyModbusTCP, pymodbus."""
+"""The simulated rig's doors with third-party programs: python-can, pyModbusTCP, pymodbus."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Our Modbus slaves with clients that nobody here wrote: minimalmodbus and pymodbus, on a pseudo-terminal."""
+"""Our Modbus slaves with third-party clients: minimalmodbus and pymodbus, on a pseudo-terminal."""
 
 from __future__ import annotations
 
@@ -68,7 +68,7 @@ class Terminal:
 
 @pytest.fixture
 def connect() -> Iterator[Callable[..., Terminal]]:
-    """Give a function that puts slaves on a pseudo-terminal."""
+    """Yield a function that puts slaves on a pseudo-terminal."""
     opened: list[Terminal] = []
 
     def make(*slaves: ModbusSlave) -> Terminal:

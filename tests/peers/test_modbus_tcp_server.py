@@ -1,4 +1,4 @@
-"""Our Modbus drivers with a server that nobody here wrote: pyModbusTCP, through the TCP edge."""
+"""Our Modbus drivers with a third-party server: pyModbusTCP, through the TCP edge."""
 
 from __future__ import annotations
 

@@ -1,1 +1,1 @@
-"""`tester sim` and `tester run` as processes of their own, and what the rig's own logs say of them."""
+"""`tester sim` and `tester run` as separate processes, measured by the rig's own logs."""

@@ -1,4 +1,4 @@
-"""What the bus logs of `tester sim` say of the controlling program: how long from a sample to the command it led to.
+"""Latency of the controlling program, from sample to command, from the bus logs of `tester sim`.
 
 All times are the simulator's, on its side of the wire. Drives sample at SYNC and answer with their TPDOs; the load cell
 samples when a request is complete. A scan is a burst of RPDO1s and the SYNC after them. A scan counts as reflecting a

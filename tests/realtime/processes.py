@@ -42,7 +42,7 @@ _LOOK_S = 0.02
 
 
 class NotReachedError(Exception):
-    """What was waited for has not come; the message says what, and what the processes wrote."""
+    """Timed out: the awaited state did not come; the message names it and quotes the processes' output."""
 
 
 class SimProcess:
@@ -95,7 +95,7 @@ class RunProcess:
             self.process = start(arguments, stderr=stream)
 
     def said(self) -> str:
-        """Return what it wrote to people, on one line."""
+        """Return its standard error, on one line."""
         return " | ".join(self.errors.read_text(encoding="utf-8").splitlines()[-3:])
 
 

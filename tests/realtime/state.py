@@ -27,7 +27,7 @@ class Row:
 
 
 class StateReader:
-    """Gives the rows that have come since the last look."""
+    """Yields the rows written since the last read."""
 
     def __init__(self, path: Path) -> None:
         """Begin at the start of the file."""

@@ -1,4 +1,4 @@
-"""What the real-time checks read off logs, and, as campaigns, the checks themselves."""
+"""Figures that the real-time checks read from logs, and, as campaigns, the checks themselves."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a packaged recipe's file asks for in its head: the rig, and what is to be set there."""
+"""The rig and the settings named in the head of a packaged recipe's file."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Compounds and surfaces that ship: each is read without a doubt, and holds what its figures say."""
+"""Packaged compounds and surfaces: each is read without a doubt and matches its stated figures."""
 
 from __future__ import annotations
 

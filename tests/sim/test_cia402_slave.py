@@ -472,7 +472,7 @@ def test_a_persistent_cause_is_found_at_power_on() -> None:
 
 
 def watched(option: int, speed: int = 10_000) -> DriveBench:
-    """Return a turning drive that has heard one heartbeat."""
+    """Return a turning drive that has received one heartbeat."""
     bench = turning(speed)
     bench.write(0x6007, 0, option, 2)
     bench.write(0x1016, 1, PC << 16 | 200, 4)

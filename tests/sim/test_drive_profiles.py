@@ -1,4 +1,4 @@
-"""Each drive profile against the simulated drive that answers as its maker's dictionary does."""
+"""Each drive profile against a simulated drive with its maker's dictionary."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ NO_OBJECT, NO_SUB_INDEX, READ_ONLY = 0x0602_0000, 0x0609_0011, 0x0601_0002
 
 
 def axes(profile: str) -> tuple[AxisConfig, ...]:
-    """A wheel that says when it stands, a press with inputs where the profile is fit for one, and a yaw axis."""
+    """A wheel that reports standstill, a press with inputs where the profile suits one, and a yaw axis."""
     press = profile if profile in PRESSES else "cia402"
     return (
         replace(WHEEL, node_id=1, profile=profile, rpdo_deadline_s=DEADLINE_S, speed_zero=0.05),
@@ -35,7 +35,7 @@ def axes(profile: str) -> tuple[AxisConfig, ...]:
 
 
 def refusal(config: AxisConfig, node: AxisConfig | None = None) -> str:
-    """What connecting an axis says; ``node``: as which the drive is built."""
+    """Return the messages of connecting an axis; ``node``: the node as which the drive is built."""
     bus = Bus((config,))
     if node is not None:
         bus.nodes[0].power(False)

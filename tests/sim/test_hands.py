@@ -1,4 +1,4 @@
-"""Lines that a person, or a run in another process, has done at a simulated machine."""
+"""Actions of a person, or of a run in another process, at a simulated machine."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ VALUES_OF_EVERY = (3, "NR 50 phr", False, "wet", 0.1 + 0.2, {"slip": -0.1, "temp
 
 
 class Machine:
-    """Keeps what was done to it."""
+    """Keeps the actions."""
 
     def __init__(self) -> None:
         self.done: dict[str, object] = {}

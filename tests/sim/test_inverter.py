@@ -1,4 +1,4 @@
-"""Our CAN master and a simulated frequency inverter: what goes over the wire in velocity mode, and back."""
+"""Our CAN master and a simulated frequency inverter: frames in velocity mode, both ways."""
 
 from __future__ import annotations
 

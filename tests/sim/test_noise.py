@@ -1,4 +1,4 @@
-"""Keyed random streams, scatter and what it adds up to."""
+"""Keyed random streams, scatter and its sum."""
 
 from __future__ import annotations
 

@@ -12,7 +12,7 @@ from tests.tester.machine.plain.bench import BenchPlant, BenchRuns, bench_rig
 
 
 class CountingPlant(BenchPlant):
-    """Adds up what it is told."""
+    """Adds up its commands."""
 
     def __init__(self) -> None:
         super().__init__()

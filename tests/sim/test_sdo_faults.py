@@ -1,4 +1,4 @@
-"""A drive whose service data are out of order, byte by byte, and what our end makes of each."""
+"""A drive with faulty service data, byte by byte, and our reaction to each fault."""
 
 from __future__ import annotations
 

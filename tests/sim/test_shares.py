@@ -1,4 +1,4 @@
-"""Faults of what several members share: together, each in its own unit, and right again afterwards."""
+"""Faults of shared parts: all members together, each in its own unit, all right again afterwards."""
 
 from __future__ import annotations
 

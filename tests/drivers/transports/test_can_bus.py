@@ -153,7 +153,7 @@ def test_error_frames_are_counted_by_what_they_say(name: str, counted: dict[str,
 
 
 class StatefulBus(StubBus):
-    """A bus whose interface tells a state."""
+    """A bus whose interface reports a state."""
 
     @property
     def state(self) -> can.BusState:
@@ -260,7 +260,7 @@ def test_what_a_scan_should_not_wait_for_is_told_at_once(frames: list[tuple[int,
     port = PythonCanPort(StubBus(script), on_urgent=lambda: told.append(1))
     assert len(collect(port, len(frames))) == len(frames)
     port.close()
-    assert len(told) == calls + 1  # the end of reception is the last thing told
+    assert len(told) == calls + 1  # the end of reception is reported last
 
 
 def test_frames_of_other_programs_of_this_computer_are_heard() -> None:

@@ -1,4 +1,4 @@
-"""Our own frames told from those of others, whatever the interface gives back."""
+"""Our own frames distinguished from other nodes' frames, whatever the interface echoes."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ PROBE: CanFrame = (0.01, PROBE_ID, TOKEN)
 
 
 def begun() -> OwnFrames:
-    """Return one whose probe and first SYNC were sent at 0."""
+    """Return an instance whose probe and first SYNC were sent at 0."""
     own = OwnFrames(TOKEN)
     probe = own.probe
     assert probe is not None

@@ -14,7 +14,7 @@ from drivers.transports.socketcand import settings_of
 
 
 class Server:
-    """Does the handshake with whoever connects last: the edge looks first whether anybody listens."""
+    """Does the handshake with the last client: the edge first checks that a server listens."""
 
     def __init__(self) -> None:
         self.listener = socket.create_server(("127.0.0.1", 0))

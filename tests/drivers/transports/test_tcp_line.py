@@ -101,7 +101,7 @@ def test_a_connection_that_does_not_come_back_in_time_is_bus_lost() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         line = open_tcp_line("127.0.0.1", listener.getsockname()[1])
     line.renew(0.0)
-    line.renew(REOPEN_S - 0.01)  # asked for again before it is there: the time still counts from the first
+    line.renew(REOPEN_S - 0.01)  # requested again before it is there: the time still counts from the first request
     assert line.read(REOPEN_S - 0.01) == []
     with pytest.raises(BusLost, match="no connection within 500 ms"):
         line.read(REOPEN_S)

@@ -9,7 +9,7 @@ from tester.kinds.wheel_on_belt.fit.data import APPENDICES, rows
 
 
 class Flat:
-    """A law of nobody's data."""
+    """A law without data."""
 
     def mu(self, temperature_c: float, load_n: float, slip_m_s: float) -> float:
         return 0.5

@@ -31,7 +31,7 @@ def coulomb(compound: str, figures: Mapping[str, float]) -> Coulomb:
 
 @pytest.fixture(autouse=True)
 def forgotten(monkeypatch: pytest.MonkeyPatch) -> None:
-    """What a test registers is gone after it."""
+    """Laws that a test registers are removed after it."""
     monkeypatch.setattr(laws, "_LAWS", dict(laws._LAWS))
     monkeypatch.setattr(laws, "_FINDERS", [])
 

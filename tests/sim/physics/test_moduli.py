@@ -1,4 +1,4 @@
-"""Complex moduli, against their equations and against the law that a table was made of."""
+"""Complex moduli, against their equations and against the law behind a table."""
 
 from __future__ import annotations
 

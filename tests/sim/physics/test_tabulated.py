@@ -1,4 +1,4 @@
-"""Tables of laws: right within half a percent, kept in a folder, made anew where a file does not hold."""
+"""Tables of laws: right within half a percent, kept in a folder, recomputed where a file is invalid."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What its travel under load takes of a belt's grip."""
+"""Loss of a belt's grip by travel under load."""
 
 from __future__ import annotations
 

@@ -23,7 +23,7 @@ def gateway() -> ModbusGateway:
 
 
 def answers(gateway: ModbusGateway, session: ModbusSession) -> list[tuple[float, bytes]]:
-    """Serve the gateway at its own times until nothing is due; return what it sent, and when."""
+    """Serve the gateway at its own times until nothing is due; return its replies with their times."""
     found: list[tuple[float, bytes]] = []
     while gateway.due_s < inf:
         now = gateway.due_s

@@ -25,7 +25,7 @@ posix = pytest.mark.skipif(sys.platform == "win32", reason="this system has no p
 
 
 class Bench:
-    """A server on pseudo-terminals whose clock goes on when it is told to."""
+    """A server on pseudo-terminals whose clock advances only on command."""
 
     def __init__(self, folder: Path) -> None:
         _, rig, hands = simulated_ports(load_rig("sim", ("sim.noise=0",)), 1, None)
@@ -48,7 +48,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
 
 
 def heard(bus: can.BusABC) -> set[int]:
-    """Return the identifiers of what waits; the adapter's answers to commands are read between them."""
+    """Return the identifiers of waiting frames, past the adapter's answers to commands."""
     messages = [bus.recv(0.0) for _ in range(200)]
     return {message.arbitration_id for message in messages if message is not None}
 

@@ -1,4 +1,4 @@
-"""The far end of a serial port on a simulated line: where a request ends, and when its reply arrives."""
+"""The far end of a serial port on a simulated line: the end of a request, and the arrival of its reply."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ READ_CELL = bytes.fromhex("0001 0000 0006 01 03 0000 0001")
 
 
 class Bench:
-    """A server whose clock stands at ``t`` (s) and goes on when it is told to."""
+    """A server whose clock is at ``t`` (s) and advances only on command."""
 
     def __init__(self, server: RigServer, rig: WheelRig) -> None:
         self.server, self.rig = server, rig
@@ -81,7 +81,7 @@ class Client:
         self.socket.sendall(data)
 
     def look(self) -> bytes:
-        """Return what has arrived since the last look."""
+        """Return the frames since the last call."""
         self.socket.setblocking(False)
         found = b""
         try:

@@ -247,7 +247,7 @@ def test_a_third_party_reaches_nodes_and_computer() -> None:
 
 
 class Taker:
-    """Keeps what it is handed; equal data mean nothing new to it."""
+    """Keeps the frames it receives; ignores equal data."""
 
     def __init__(self, wire: CanWire, can_id: int) -> None:
         self.heard: list[tuple[float, bytes]] = []

@@ -1,4 +1,4 @@
-"""The simulated Modbus line: wire times, silence, collisions, and what can be wrong with it."""
+"""The simulated Modbus line: wire times, silence, collisions, faults."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_reply_arrives_after_request_silence_turnaround_and_reply() -> None:
 
 
 def test_ten_registers_at_115200_without_turnaround_take_the_computed_time() -> None:
-    # Design page, RTU wire limit: 6.36 ms with both silences, the last of which is the master's.
+    # Design page, RTU wire limit: 6.36 ms with both silences; the last is the master's.
     slave = ModbusSlave(1, 0.0, [(0, 20)], frozenset({3}))
     line = ModbusWire(115200, "N", [slave])
     ((arrival, _),) = exchange(line, with_crc(bytes.fromhex("01030000000A")))
@@ -145,7 +145,7 @@ def test_it_tells_when_there_is_something_to_read() -> None:
 
 
 def spoilt(kind: str, **more: float) -> tuple[list[tuple[float, bytes]], tuple[float, bytes], ModbusSlave]:
-    """Return what arrives of a write that is spoilt, what should, and the slave."""
+    """Return the received bytes of a corrupted write, the sent ones, and the slave."""
     good, _ = wire()
     (expected,) = exchange(good, WRITE)
     line, slave = wire()

@@ -14,7 +14,7 @@ from tests.sim.machines.specimen_on_track.variants import parameters, wiring
 
 
 class Nobody:
-    """A computer to which nothing happens."""
+    """A computer without faults."""
 
     def stall(self, seconds: float) -> None:
         """Not this one."""

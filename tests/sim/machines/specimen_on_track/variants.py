@@ -23,7 +23,7 @@ def _linear_track() -> AxisConfig:
         name="track", node_id=1, mode="velocity", unit="mm/s",
         velocity_increments=1e6,        # counts per mm/s: 1 nm/s
         position_increments=1e6,        # counts per mm: 1 nm; 300 mm are 3e8, of the 2.1e9 of 32 bits
-        feedback="position",            # the speed is told from the position
+        feedback="position",            # speed from position
         rated_torque_nm=10.0,
         max_speed=10.5,                 # mm/s
         acceleration=20.0,              # mm/s2

@@ -1,4 +1,4 @@
-"""The belt's state: it goes blunt below whatever wheel is on, and stays so."""
+"""The belt's state: any wheel blunts it, and it stays blunt."""
 
 from __future__ import annotations
 

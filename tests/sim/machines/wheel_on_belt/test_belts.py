@@ -1,4 +1,4 @@
-"""Belts of the simulated wheel: friction, thickness and grip are those of the belt that is on."""
+"""Belts of the simulated wheel: the mounted belt sets friction, thickness and grip."""
 
 from __future__ import annotations
 

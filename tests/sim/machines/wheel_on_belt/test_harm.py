@@ -1,4 +1,4 @@
-"""The harm observer: what is counts, not what is measured."""
+"""The harm observer judges the true state, not the measured one."""
 
 from __future__ import annotations
 

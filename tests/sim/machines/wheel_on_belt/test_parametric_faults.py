@@ -1,4 +1,4 @@
-"""Faults with a magnitude: their ranges, their words, and what they do to what is shown or moved."""
+"""Faults with a magnitude: their ranges, their texts, and their effect on readings and motion."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ UNDONE = [
 
 
 class Nobody:
-    """A computer that nothing happens to."""
+    """A computer without faults."""
 
     def stall(self, seconds: float) -> None: ...
 

@@ -359,7 +359,7 @@ def test_thermometer_bias_is_the_sessions_and_within_a_kelvin() -> None:
 
 
 def measured(plant: Plant) -> list[tuple[float, ...]]:
-    """What a short repeat looks like through the sensors."""
+    """A short repeat as the sensors show it."""
     rows: list[tuple[float, ...]] = []
     for i in range(100):
         plant.advance(0.01, WHEEL_RAD_S, 0.5, press_for(200.0), 0.0, 0.0, 0.0)

@@ -179,7 +179,7 @@ def test_a_drive_without_power_gives_no_torque(rolling: Simulation) -> None:
 
 
 def driven(world: WheelRig, speed_mm_s: float, seconds: float) -> list[float]:
-    """Return the force at every 10 ms while the press's drive, powered, moves at a speed that nobody controls."""
+    """Return the force at every 10 ms while the press's drive, powered, moves at an uncontrolled speed."""
     press = world.axes["press"]
     assert isinstance(press.axis, VelocityAxis)
     forces: list[float] = []

@@ -1,4 +1,4 @@
-"""The relay acts once wheel or belt stands and the other turns, and holds until both stand."""
+"""The relay acts once wheel or belt is at rest and the other turns, and holds until both are at rest."""
 
 from __future__ import annotations
 

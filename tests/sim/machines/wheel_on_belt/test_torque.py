@@ -1,4 +1,4 @@
-"""Torque at the shafts, and what a limit of it leaves a press."""
+"""Torque at the shafts, and the force left to a press at a torque limit."""
 
 from __future__ import annotations
 
