@@ -1,4 +1,4 @@
-"""Runs that several tests look at, made once."""
+"""Runs shared by several tests, made once."""
 
 from __future__ import annotations
 
@@ -45,19 +45,19 @@ def rolling_run() -> Simulation:
 
 @pytest.fixture(scope="session")
 def hot_run() -> Simulation:
-    """3# at 400 N on the hot rig: what cannot be held."""
+    """3# at 400 N on the hot rig: a condition that cannot be held."""
     text = SHORT.replace("1#", "3#").replace("200 N", "400 N").replace("14 rev", "14 rev\n  max_bursts: 3")
     return Simulation(text, HOT).to_the_end()
 
 
 @pytest.fixture(scope="session")
 def warm_run() -> Simulation:
-    """1# at 200 N on the hot rig, without noise: what just can be held."""
+    """1# at 200 N on the hot rig, without noise: a condition that can just be held."""
     text = SHORT.replace("14 rev", "14 rev\n  max_bursts: 5")
     return Simulation(text, (*HOT, *QUIET)).to_the_end()
 
 
 @pytest.fixture(scope="session")
 def mid_burst() -> Simulation:
-    """A run that has just begun to count; to be copied by whoever goes on with it."""
+    """A run that has just begun to count; copy it before you continue it."""
     return Simulation(seed=1).until(in_burst)

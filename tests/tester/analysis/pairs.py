@@ -1,4 +1,4 @@
-"""Repeats of both directions with known truth: what a cell turned by an angle, with crosstalk, shows of them."""
+"""Repeats of both directions with known truth: readings of a cell turned by an angle, with crosstalk."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ LOAD_N = 200.0
 
 
 def shown(mu: float, repeat: int, turned_deg: float = 0.0, seen: tuple[float, float] = (0.0, 0.0)) -> RepeatResult:
-    """Return what the cell shows of a repeat; ``seen``: share of the load in x, of the friction in z."""
+    """Return the cell's reading of a repeat; ``seen``: share of the load in x, of the friction in z."""
     friction = -mu * LOAD_N if is_reversed(repeat) else mu * LOAD_N
     c, s = cos(radians(turned_deg)), sin(radians(turned_deg))
     along, normal = friction * c + LOAD_N * s, LOAD_N * c - friction * s
@@ -37,5 +37,5 @@ def series(
 
 
 def refused(one: RepeatResult) -> RepeatResult:
-    """Return a repeat as refused for its drift."""
+    """Return a repeat refused for its drift."""
     return replace(one, status=RepeatStatus.REFUSED, reason="drifts by +4.0 % a window", drift_percent=4.0)

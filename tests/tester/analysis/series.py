@@ -24,12 +24,12 @@ def sample(**values: float) -> tuple[float, ...]:
 
 
 def means_of(**given: float) -> Means:
-    """Return means of the wheel's channels, NaN for those that are not given."""
+    """Return means of the wheel's channels, NaN for missing ones."""
     return Means(QUANTITIES, [given.get(one.name, float("nan")) for one in QUANTITIES.averaged])
 
 
 def block(mu: float, *, at_s: float = 0.0, burst: int = 1, surface_c: float = 25.0, **means: float) -> Block:
-    """Return a block of one revolution, at 200 N and with a purely longitudinal coefficient unless told."""
+    """Return a block of one revolution, at 200 N and with a purely longitudinal coefficient by default."""
     usual = {"force_x_n": 200.0 * mu, "force_y_n": 0.0, "force_z_n": 200.0, "moment_z_nm": 0.01}
     usual |= {"drive_torque_nm": 6.5, "wheel_speed_m_s": 0.8, "belt_speed_m_s": 0.5, "slip_m_s": 0.3}
     usual |= {"sideslip_deg": 0.0, "camber_deg": 0.0, "hub_c": 30.0}

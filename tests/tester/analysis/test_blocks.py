@@ -144,7 +144,7 @@ def test_resultant_without_load_has_no_value() -> None:
 
 
 def random_session(seed: int) -> list[Sample]:
-    """Return samples with gates, bursts, repeats, lost scans and both scan rates, as they may come."""
+    """Return samples with gates, bursts, repeats, lost scans and both scan rates, as in real runs."""
     random = Random(seed)
     angle, t, burst, key = 0.0, 0.0, 1, 1
     samples: list[Sample] = []

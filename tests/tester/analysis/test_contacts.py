@@ -1,4 +1,4 @@
-"""Contacts in a run's samples: touches, what is averaged after them, what rubber remembers."""
+"""Contacts in a run's samples: touches, averages after them, the rubber's memory."""
 
 from __future__ import annotations
 

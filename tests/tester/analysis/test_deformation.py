@@ -1,4 +1,4 @@
-"""Softening, relaxation and deformation hold what was put into the simulated contact, over many seeds."""
+"""Softening, relaxation and deformation recover the parameters of the simulated contact, over many seeds."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def holds(found: WithU, truth: float) -> bool:
 
 @pytest.fixture(scope="module")
 def judged() -> list[tuple[Pressed, list[PressedContact], RubberStiffness]]:
-    """Return the rubber of every seed with what was found."""
+    """Return the rubber of every seed with its fit."""
     rigs = [pressed(seed) for seed in SEEDS]
     listed = [contacts_of(rig) for rig in rigs]
     return [(rig, contacts, stiffness(contacts)) for rig, contacts in zip(rigs, listed, strict=True)]

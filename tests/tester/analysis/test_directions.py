@@ -1,4 +1,4 @@
-"""Both directions of sliding: what half the difference is free of, and what half the sum tells."""
+"""Both directions of sliding: errors absent from half the difference, and visible in half the sum."""
 
 from __future__ import annotations
 

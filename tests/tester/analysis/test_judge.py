@@ -1,4 +1,4 @@
-"""A condition's repeats judged together, and what carries over from one to the next."""
+"""A condition's repeats judged together, and carry-over from repeat to repeat."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ N = 45
 
 
 def repeat(seed: int, drift: float = 0.0, *, level: float = 1.0, settles: float = 0.0, at: int = 0) -> list[Block]:
-    """Return what counts of a repeat; ``settles``: a share of mu, gone to 1/e after 94 blocks, from block ``at`` on."""
+    """Return a repeat's counted blocks; ``settles``: a share of mu, 1/e after 94 blocks, from block ``at`` on."""
     noise = islice(correlated(Random(seed)), 2 * N)
     values = [
         MU * level * (1.0 + x + drift * (i - 22) / 30 + settles * exp(-(at + i) / 94.0)) for i, x in enumerate(noise)
@@ -34,7 +34,7 @@ def repeat(seed: int, drift: float = 0.0, *, level: float = 1.0, settles: float 
 
 
 def result_of(used: list[Block], *, alone: bool = False) -> RepeatResult:
-    """Return a repeat's result from the blocks that count; neither window nor transient is left to be asked for."""
+    """Return a repeat's result from the blocks that count; neither window nor transient is open."""
     flags = NOT_SHOWN if alone and not fit_drift([used], Window(30)).stable else ""
     return replace(reduce_repeat(used), flags=flags, status=RepeatStatus.VALID)
 

@@ -1,4 +1,4 @@
-"""Sensitivity to temperature, and the coefficient at the temperature that was asked for."""
+"""Sensitivity to temperature, and the coefficient at the requested temperature."""
 
 from __future__ import annotations
 

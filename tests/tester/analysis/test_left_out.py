@@ -83,9 +83,9 @@ def test_what_is_left_out_is_what_was_made_and_is_not_valid() -> None:
         (3, 3, (), ()),
         (3, 4, (1,), (3,)),
         (3, 5, (), ()),  # for precision: none was refused
-        (3, 5, (1,), (3,)),  # one in its place, one more for precision
-        (3, 5, (3,), (4,)),  # the fourth was for precision, the fifth stands in its place
-        (3, 6, (0, 3), (3, 4)),  # a make-up that was refused has one of its own
+        (3, 5, (1,), (3,)),  # one replacement, one more for precision
+        (3, 5, (3,), (4,)),  # the fourth was for precision, the fifth replaces it
+        (3, 6, (0, 3), (3, 4)),  # a refused make-up gets its own make-up
         (3, 2, (0,), ()),  # stopped before anything was made up
     ],
 )

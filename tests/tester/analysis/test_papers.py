@@ -33,7 +33,7 @@ pytest.importorskip("scipy", reason="needs the extra `report`")
 
 STORED = Path(__file__).with_name("papers.txt")
 PAGE = Path(__file__).parents[3] / "docs" / "papers.md"
-"""Items and page as `python docs/papers.py` wrote them last; a changed verdict or number changes these files."""
+"""Latest items and page of `python docs/papers.py`; a changed verdict or number changes these files."""
 WANTED = Path(__file__).parents[4] / "shared" / "design" / "papers.md"
 """The list of results to reproduce, where it is at hand."""
 MOST_NOT_ATTEMPTED = 12
@@ -48,7 +48,7 @@ def result() -> Judged:
 
 
 def same(a: str, b: str) -> bool:
-    """Tell whether two lines differ in the last digit of numbers at most."""
+    """Return whether two lines differ in the last digit of numbers at most."""
     if NUMBER.sub("#", a) != NUMBER.sub("#", b):
         return False
     return all(
@@ -57,7 +57,7 @@ def same(a: str, b: str) -> bool:
 
 
 def unit(number: str) -> float:
-    """Return one in the last digit of a decimal number; of a whole one, which counts something, 0."""
+    """Return one unit in the last digit of a decimal number; 0 for a whole number, which is a count."""
     mantissa, e, exponent = number.partition("e")
     decimals = len(mantissa.partition(".")[2])
     return 10.0 ** (int(exponent) - decimals) if e else (10.0**-decimals if decimals else 0.0)
@@ -139,7 +139,7 @@ PLACES = {
 
 
 def places(items: Sequence[PaperItem]) -> set[str]:
-    """Return the places that items name, spans and lists written out."""
+    """Return the places named by items, with spans and lists expanded."""
     found: set[str] = set()
     for item in items:
         for kind, text in re.findall(r"(Fig|Eq|Table)s? ([\d, abcto]+)", item.where):

@@ -98,7 +98,7 @@ def test_the_interval_of_a_balanced_set_is_that_of_a_line_through_the_pieces() -
     travel = [one.counterface_m for one in references]
     middle = sum(travel) / 8
     spread = sqrt(sum((x - middle) ** 2 for x in travel))
-    between = sqrt(8 * 0.03**2 / 14)  # the stated 3 % with 8 degrees of freedom, none of the 6 residual ones
+    between = sqrt(8 * 0.03**2 / 14)  # the stated 3 % with 8 degrees of freedom, without the 6 residual ones
     assert found.standard == pytest.approx(hypot(between, U) / spread, rel=1e-6)
     assert found.df == pytest.approx(14.0 * (hypot(between, U) / between) ** 4, rel=1e-6)
 

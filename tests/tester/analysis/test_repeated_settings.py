@@ -1,4 +1,4 @@
-"""One setting measured several times: what its values have in common, whether they agree, by how much two differ."""
+"""One setting measured several times: common errors of its values, their agreement, and the difference of two."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def error(of: SettingMeasurement, cause: str) -> ErrorPart:
     return found
 
 
-# -- what measurements have in common ---------------------------------------------------------------------------------
+# -- common errors of measurements ------------------------------------------------------------------------------------
 
 
 def test_all_terms_of_the_compound_s_budget_are_there_with_what_shares_them() -> None:
@@ -154,7 +154,7 @@ def drawn(
 ) -> list[SettingMeasurement]:
     """Return measurements on wheels with a repeatability that is estimated; the first is less by ``changed``.
 
-    ``known``: standard deviation of what is each measurement's own beside the repeats.
+    ``known``: standard deviation of each measurement's own error beside the repeats.
     """
     random = np.random.default_rng(seed)
     wheels = {piece: random.normal(0.0, WHEELS) for piece in sorted(set(pieces))}

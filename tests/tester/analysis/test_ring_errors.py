@@ -39,7 +39,7 @@ def test_errors_at_any_angle_seldom_look_like_a_worn_place() -> None:
     for seed in range(200):
         draw = Random(f"anywhere {seed}")
         said += sector_of(sorted(draw.uniform(0.0, 500.0) for _ in range(40))).found
-    assert said <= 2  # one in a thousand at most is what CHANCE asks for
+    assert said <= 2  # CHANCE allows at most one in a thousand
 
 
 def test_few_errors_say_nothing() -> None:

@@ -1,4 +1,4 @@
-"""Pairs as values of a condition: what counts, what is excluded and why, and each direction's own drift."""
+"""Pairs as values of a condition: counted and excluded pairs with reasons, and each direction's own drift."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ def steady(seed: int, drift: float = 0.0, noisy: float = 0.3) -> list[Block]:
 
 
 def judged(drifts: dict[int, float], noisy: float = 0.3) -> tuple[list[RepeatResult], str, float]:
-    """Judge six repeats, some of which drift; return them, the flags, the drift."""
+    """Judge six repeats, some with drift; return them, the flags, the drift."""
     results = series([0.7] * 6)
     found, judgement = PAIRS.judge(results, [steady(i, drifts.get(i, 0.0), noisy) for i in range(6)], 3, Window(30.0))
     return found, judgement.flags, judgement.drift_percent

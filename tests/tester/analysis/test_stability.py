@@ -1,4 +1,4 @@
-"""What of a repeat counts: truncation of its transient, and how much it collects."""
+"""The counted part of a repeat: truncation of its transient, and its length."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ MU = 0.7
 
 
 def settling(n: int, size: float = 0.2, revolutions: float = 2.0) -> list[float]:
-    """Return coefficients with a transient of a share of them, and a little noise that is the same every time."""
+    """Return coefficients with a transient of a share of them, and a little noise that is always the same."""
     random = Random(1)
     return [MU * (1.0 + size * exp(-i / revolutions) + random.gauss(0.0, 0.004)) for i in range(n)]
 

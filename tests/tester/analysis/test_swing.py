@@ -1,4 +1,4 @@
-"""Swings of friction within a revolution, told from samples."""
+"""Swings of friction within a revolution, from samples."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def trace(
     of_order: float = 0.0,
     sine: bool = False,
 ) -> Trace:
-    """Return the trace of contacts with AR(1) noise of 1 %, stick-slip, and friction that goes with the turning."""
+    """Return the trace of contacts with AR(1) noise of 1 %, stick-slip, and friction that varies with the angle."""
     random = Random(seed)
     counter, made = BlockCounter(QUANTITIES), StickSlip(share, hz, NormalStream(seed, "periods"))
     dt = 1.0 / rate_hz
@@ -62,7 +62,7 @@ def trace(
 def test_stick_slip_is_found_with_its_frequency(hz: float) -> None:
     found = swing_of(trace(0.10, hz))
     assert found.hz == pytest.approx(hz, rel=0.05)
-    # A saw-tooth's amplitude reads 18 % low, more where its multiples lie beyond what is looked at.
+    # A saw-tooth's amplitude reads 18 % low, more where its multiples lie beyond the examined range.
     assert LIMIT_PERCENT < found.percent < 10.0
 
 

@@ -1,4 +1,4 @@
-"""What the machine's chain contributes: every term's size at one point, reckoned here by hand."""
+"""Contributions of the machine's chain: every term's size at one point, calculated here by hand."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ COMMON = {
     "cell zero, friction": "", "cell zero, load": "", "wheel to wheel": "",
     "diameter as installed": "piece", "diameter worn off": "piece",
 }  # fmt: skip
-"""What has the same error; of the others the rig."""
+"""Scope of a shared error; the rig for all others."""
 
 
 @pytest.mark.parametrize("name", EXPECTED)
@@ -91,7 +91,7 @@ LEFT = {
     "diameter as installed": 0.0,
     "diameter worn off": 0.0,
 }
-"""Share that both directions leave of a term; of the others all."""
+"""Share of a term that remains with both directions; all of every other term."""
 
 
 @pytest.mark.parametrize("name", EXPECTED)

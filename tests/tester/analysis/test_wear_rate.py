@@ -1,4 +1,4 @@
-"""The wear rate from checks of the diameter: rate, uncertainty, what is refused."""
+"""The wear rate from checks of the diameter: rate, uncertainty, refusals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How worn a piece was when a condition was measured on it, and how well its checks know that."""
+"""Wear of a piece when a condition was measured on it, and its uncertainty from the checks."""
 
 from __future__ import annotations
 
@@ -73,7 +73,7 @@ def test_the_rate_of_a_series_tells_how_much_was_worn_off_before_it() -> None:
         for i in range(4)
     )
     found = Worn(90.0, 89.0, 200.0, checks).size(50.0)
-    assert found.checked_u_mm == pytest.approx(0.2, rel=0.05)  # 0.3 mm before it, and 0.1 mm believed
+    assert found.checked_u_mm == pytest.approx(0.2, rel=0.05)  # 0.3 mm before it, and 0.1 mm assumed
 
 
 def test_a_wheel_that_was_put_back_keeps_what_its_earlier_checks_knew() -> None:

@@ -1,4 +1,4 @@
-"""The axes of a condition: nothing that is off its default is left out, anywhere."""
+"""The axes of a condition: every value off its default appears everywhere."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What derives from a class that was made to be derived from has slots for its own fields only."""
+"""A subclass of a base class has slots for its own fields only."""
 
 from __future__ import annotations
 
@@ -10,14 +10,14 @@ from tester.base.deriving import derivable, mypyc_attr
 
 @dataclass(slots=True)
 class Base:
-    """What may be compiled."""
+    """Modules that may be compiled."""
 
     now: float = 0.0
 
 
 @derivable
 class Plain(Base):
-    """What a laboratory derives from."""
+    """Base classes for a laboratory."""
 
     load_n: float = 1.0
 

@@ -1,4 +1,4 @@
-"""One table of keys: what a terminal sends, and what the pages say of it."""
+"""One table of keys: the bytes of a terminal, and their description in the pages."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Exclusive use: who is refused, what he is told, and when the lock is free again."""
+"""Exclusive use: refusals, their text, and when the lock is free again."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def test_a_killed_process_frees_the_rig(tmp_path: Path, other: subprocess.Popen[
 
 
 def taken(folder: Path, resource: str) -> bool:
-    """Tell whether a bus is held by somebody."""
+    """Return whether another process holds a bus."""
     try:
         with ExclusiveUse(folder) as use:
             use.lock([resource], "a third")

@@ -1,4 +1,4 @@
-"""Extensions come from installed packages, by name, when they are asked for, and only where that is allowed."""
+"""Extensions come from installed packages, by name, on request, and only where allowed."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ MODULE = "LAW = 'a law'\n"
 
 
 def install(folder: Path, package: str, entry_points: str, **files: str) -> None:
-    """Lay a package of version 1.2 into a folder of sys.path, with what an installer writes beside it."""
+    """Lay a package of version 1.2 into a folder of sys.path, with an installer's metadata beside it."""
     (folder / package).mkdir(parents=True)
     for name, text in {"__init__.py": "", **files}.items():
         (folder / package / name).write_text(text, "utf-8")
@@ -35,7 +35,7 @@ def install(folder: Path, package: str, entry_points: str, **files: str) -> None
 @pytest.fixture(autouse=True)
 def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Begin and end without anything loaded in this process."""
-    monkeypatch.setenv(ALLOW_VARIABLE, "")  # so that it is put back
+    monkeypatch.setenv(ALLOW_VARIABLE, "")  # so that it is restored
     monkeypatch.delenv(ALLOW_VARIABLE)
     plugins.cache_clear()
     yield
@@ -44,7 +44,7 @@ def fresh(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
 
 @pytest.fixture
 def acme(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path]:
-    """A laboratory's package with one law and one profile; modules it brings are forgotten afterwards."""
+    """A laboratory's package with one law and one profile; its modules are unloaded afterwards."""
     before = set(sys.modules)
     declared = "[friction_tester.laws]\nacme_law = acme.law:LAW\n[friction_tester.profiles]\nacme_cell = acme\n"
     install(tmp_path, "acme", declared, **{"law.py": MODULE, "acme_cell.toml": 'kind = "load_cell"\n'})

@@ -1,4 +1,4 @@
-"""What asks a process to end, and whom it reaches."""
+"""Signals that end a process, and the processes they reach."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ posix = pytest.mark.skipif(not HANG_UP, reason="this system has no SIGHUP")
 
 @pytest.fixture(autouse=True)
 def as_before() -> Generator[None]:
-    """Give every handler back, whatever a test does to it."""
+    """Restore every handler after a test."""
     numbers = [signal.SIGINT, signal.SIGTERM, *([HANG_UP, QUIT, *SUSPENDING] if HANG_UP else [])]
     before = {number: signal.getsignal(number) for number in numbers}
     if HANG_UP:

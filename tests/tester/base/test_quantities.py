@@ -1,4 +1,4 @@
-"""A table of channels: order, look-ups, what it refuses."""
+"""A table of channels: order, look-ups, refusals."""
 
 from __future__ import annotations
 
@@ -81,7 +81,7 @@ class Limits:
 
 @dataclass
 class Rig:
-    """As far as a figure looks into one."""
+    """The part of it that a figure reads."""
 
     limits: Limits
 

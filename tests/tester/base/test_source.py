@@ -28,7 +28,7 @@ from tester.base.validation import problems_of
 
 @pytest.fixture(params=["CSafeLoader", "SafeLoader"])
 def parser(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> str:
-    """libyaml, and PyYAML's own parser, which takes its place where it is missing."""
+    """libyaml, and PyYAML's own parser, which replaces it where it is missing."""
     monkeypatch.setattr(source, "_LOADER", getattr(yaml, request.param))
     return request.param
 
@@ -330,7 +330,7 @@ PIECES = [
 
 
 def read_by(loader: str, text: str) -> tuple[object, ...] | None:
-    """Return the tree with its places and problems, None of a text that is no YAML."""
+    """Return the tree with its places and problems, None for invalid YAML."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(source, "_LOADER", getattr(yaml, loader))
         try:
@@ -346,7 +346,7 @@ def test_both_parsers_read_the_same_in_what_both_read(text: str) -> None:
     by_libyaml, by_pyyaml = read_by("CSafeLoader", text), read_by("SafeLoader", text)
     if by_libyaml is not None and by_pyyaml is not None:
         (data, _, *others), (same, _, *same_others) = by_libyaml, by_pyyaml
-        assert (data, others) == (same, same_others)  # a value that is left out has a place of its own in each
+        assert (data, others) == (same, same_others)  # an omitted value has a different place in each
 
 
 @pytest.mark.parametrize("name", ["quickstart", "table2", "pre-grind"])

@@ -1,4 +1,4 @@
-"""A misspelt key is one problem, not an unknown and a missing one; a number beyond every range says so."""
+"""A misspelt key is one problem, not an unknown and a missing one; a number beyond every range is reported as such."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def test_a_number_beyond_every_range_says_so(text: str, how: str) -> None:
 
 
 def _unknown_of(text: str) -> list[str]:
-    """Return what is said of unknown keys, up to the list of the known ones."""
+    """Return the message about unknown keys, up to the list of the known ones."""
     with pytest.raises(InvalidSource) as caught:
         load_recipe(text, PART)
     return [one.message.partition(" (")[0] for one in caught.value.problems]

@@ -1,4 +1,4 @@
-"""A service that a test plays, at the address of the user's own."""
+"""A service played by a test, at the address of the user's service."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from tests.tester.service.views import hostile, state
 
 @pytest.fixture
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The user's service is at home in the test's folder."""
+    """Put the user's service into the test's folder."""
     where = tmp_path / "runtime"
     where.mkdir(mode=0o700)
     monkeypatch.setenv("TESTER_RUNTIME_DIR", str(where))

@@ -1,4 +1,4 @@
-"""Keys: what they mean, and that a terminal is given back as it was."""
+"""Keys: their meaning, and the terminal's state afterwards."""
 
 from __future__ import annotations
 

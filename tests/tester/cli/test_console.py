@@ -1,4 +1,4 @@
-"""What a run shows: data on standard output, everything for people on standard error."""
+"""Output of a run: data on standard output, messages for people on standard error."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ def test_questions_are_answered_in_turn(keyboard: Typed) -> None:
 
 
 class Broken(io.StringIO):
-    """A pipe that nobody reads."""
+    """A pipe without a reader."""
 
     def __init__(self) -> None:
         super().__init__()

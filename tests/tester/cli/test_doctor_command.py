@@ -1,4 +1,4 @@
-"""`tester doctor`, `tester bus sdo` and `tester bus params` as they are typed."""
+"""`tester doctor`, `tester bus sdo` and `tester bus params` as typed."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tester bus eds`: what a data sheet means for an axis, and its exit code."""
+"""`tester bus eds`: its report on a data sheet for an axis, and its exit code."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run ends with on a terminal."""
+"""The last lines of a run on a terminal."""
 
 from __future__ import annotations
 

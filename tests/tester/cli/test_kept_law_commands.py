@@ -1,4 +1,4 @@
-"""A law kept by a fit: what is in its file, and the commands that take it."""
+"""A law kept by a fit: its file, and the commands that take it."""
 
 from __future__ import annotations
 

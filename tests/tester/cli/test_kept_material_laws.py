@@ -1,4 +1,4 @@
-"""Kept laws that are made of materials: `persson` and `greta` from a fit to a file, and from the file to every use."""
+"""Kept laws made of materials: `persson` and `greta` from a fit to a file, and from the file to every use."""
 
 from __future__ import annotations
 
@@ -147,7 +147,7 @@ def test_a_run_is_compared_with_it_and_drawn_beside_it(home: Path, capsys: pytes
 
 
 def own_compound(home: Path) -> Path:
-    """Put a copy of SBR under another name into the folder of a run, as a run of it does; return the folder."""
+    """Put a copy of SBR under another name into a run's folder, as its own run would; return the folder."""
     run = home / "runs" / "own"
     law = true_law("persson")
 

@@ -20,7 +20,7 @@ def run(*arguments: str) -> int:
 
 
 def stop_here(monkeypatch: pytest.MonkeyPatch, command: click.Command) -> None:
-    """Put a command in the place of every other."""
+    """Replace every other command by one."""
     monkeypatch.setattr(cli.LazyGroup, "get_command", lambda *_: command)
 
 

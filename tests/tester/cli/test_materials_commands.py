@@ -98,7 +98,7 @@ def test_an_import_is_said_and_can_be_read_again(folder: Path, capsys: pytest.Ca
     assert (one.table.rows[0].storage_pa, one.table.rows[0].loss_pa) == (2000.5e6, 200.25e6)
     text = Path("c.yaml").read_text(encoding="utf-8")
     assert "SHA-256" in text
-    # The doubt of the import stays with the file.
+    # The file keeps the doubt of the import.
     assert any("does not say of which deformation" in doubt.message for doubt in one.file.doubts)
 
 

@@ -1,4 +1,4 @@
-"""One run, one status: every command, the catalogue and the screens say the same word."""
+"""One run, one status: every command, the catalogue and the screens show the same word."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tester queue` with a service that a test plays, and on a stored queue without one."""
+"""`tester queue` with a service played by a test, and on a stored queue without a service."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ RIG = "simulated rubber friction tester"
 
 @pytest.fixture
 def stored(tmp_path: Path) -> list[str]:
-    """Return the options for a stored queue of two items that no service serves."""
+    """Return the options for a stored queue of two items without a service."""
     runs = tmp_path / "runs"
     with QueueRecord(queue_folder(runs, RIG, simulated=True)) as record:
         record.append(ItemAdded(item(1, name="first")))

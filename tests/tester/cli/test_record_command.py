@@ -19,7 +19,7 @@ from tests.drivers.test_modbus_tap import ANSWER, READ
 
 @contextmanager
 def again_and_again(talk: Callable[[], object]) -> Iterator[None]:
-    """Have others talk on a wire until it has been listened to."""
+    """Keep other nodes sending on a wire until the recording ends."""
     over = Event()
 
     def talking() -> None:

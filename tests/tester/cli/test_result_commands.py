@@ -88,7 +88,7 @@ def test_show_names_what_has_no_value(home: Path) -> None:
 
 @pytest.fixture
 def stopped(home: Path) -> str:
-    """A run of five conditions of which one was measured, with a doubt."""
+    """A run of five conditions; one was measured, with a doubt."""
     folder = home / "runs" / "stopped"
     folder.mkdir()
     writer = open_writer(folder)

@@ -1,4 +1,4 @@
-"""``tester results exclude`` and ``tester results include``: what is said, and what comes of it."""
+"""``tester results exclude`` and ``tester results include``: output and effect."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ posix = pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets")
 
 @pytest.fixture
 def live(home: Path, folder: Path) -> Iterator[str]:
-    """Return the name of a run on which a process works: the one that the played service shows."""
+    """Return the name of a run in progress: the one that the played service shows."""
     shown = state().run
     assert shown is not None
     run = small_run(home / shown.folder)

@@ -25,7 +25,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def taken(monkeypatch: pytest.MonkeyPatch) -> list[SessionOptions]:
-    """Take the options of every session instead of running it."""
+    """Collect the options of every session instead of running it."""
     found: list[SessionOptions] = []
 
     class Taking:

@@ -1,4 +1,4 @@
-"""``tester runs``: what is listed, filtered and said of runs that were cut off; ``tester compare``."""
+"""``tester runs``: list, filters, lines of interrupted runs; ``tester compare``."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""`tester status`, `hold`, `release`, `ack`, `stop`, `run --detach` against a service that a test plays."""
+"""`tester status`, `hold`, `release`, `ack`, `stop`, `run --detach` against a service played by a test."""
 
 from __future__ import annotations
 
@@ -102,7 +102,7 @@ def test_every_parameter_of_run_reaches_the_service_or_is_refused() -> None:
 
 @contextmanager
 def controlled(address: Address) -> Iterator[None]:
-    """Have another client in control, in a thread of its own."""
+    """Put another client in control, in its own thread."""
     up, end = Event(), Event()
 
     async def live() -> None:

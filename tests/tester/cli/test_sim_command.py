@@ -47,7 +47,7 @@ def test_it_can_be_reached_by_its_rig_file_and_logs_its_state_until_it_is_ended(
     columns = (*LOGGED, *machines.find("wheel_on_belt").log_columns)
     assert header == ",".join(columns)
     assert all(len(row.split(",")) == len(columns) for row in rows)
-    if sys.platform != "win32":  # there a process is ended without a signal that it could see
+    if sys.platform != "win32":  # Windows ends a process without a signal to it
         assert sim.returncode == 0
         assert said.startswith("ended; at most ")
 

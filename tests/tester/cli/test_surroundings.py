@@ -28,7 +28,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]:
-    """Return exit code and standard error of a command; no number of an error and no traceback is in it."""
+    """Return exit code and standard error of a command; they contain no errno and no traceback."""
     code = invoke(list(arguments))
     err = capsys.readouterr().err
     assert "[Errno" not in err and "Traceback" not in err
@@ -64,7 +64,7 @@ def test_a_wrong_file_is_said_with_what_to_do(
 
 
 def refusing(number: int) -> Callable[..., None]:
-    """Return an ``os.mkdir`` that makes nothing."""
+    """Return an ``os.mkdir`` that creates nothing."""
 
     def refuse(path: object, *_arguments: object, **_named: object) -> None:
         raise OSError(number, os.strerror(number), str(path))

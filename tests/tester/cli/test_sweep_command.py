@@ -26,7 +26,7 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def jobs(monkeypatch: pytest.MonkeyPatch) -> list[int]:
-    """Have every run done at once, and keep for how many processes was asked."""
+    """Do every run at once, and keep the requested number of processes."""
     asked: list[int] = []
 
     @contextmanager

@@ -12,7 +12,7 @@ CELL, HEAT = "/dev/serial/by-id/cell", "/dev/serial/by-id/heat"
 
 
 def ip_link(bitrate: int = 500_000, state: str = "ERROR-ACTIVE") -> str:
-    """Return what ``ip -json -details link show can0`` writes, as far as it is read."""
+    """Return the part of the output of ``ip -json -details link show can0`` that is read."""
     return json.dumps([{"linkinfo": {"info_data": {"state": state, "bittiming": {"bitrate": bitrate}}}}])
 
 

@@ -17,7 +17,7 @@ RIG = load_rig()
 
 
 class Looked(Examination):
-    """A look whose watch has been made."""
+    """A check after its watch."""
 
     def __init__(self, watch: RigWatch) -> None:
         super().__init__(RIG, FakeComputer(), SimulatedWires(RIG))
@@ -46,7 +46,7 @@ def test_a_passive_adapter_is_a_fault() -> None:
 
 @dataclass
 class NoisyPort:
-    """A bus without nodes, on which there are errors."""
+    """A bus without nodes, with errors."""
 
     errors: dict[str, int] = field(default_factory=dict[str, int])
     state: str = "passive"

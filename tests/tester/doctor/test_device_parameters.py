@@ -1,4 +1,4 @@
-"""What devices are set to: dumped, read back, compared, kept with a run."""
+"""Device parameters: dumped, read back, compared, kept with a run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The whole look, on the simulated rig in virtual time."""
+"""The whole check, on the simulated rig in virtual time."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What the doctor says of the computer: its ports, adapters, disk, clock and punctuality."""
+"""The doctor's report on the computer: its ports, adapters, disk, clock and punctuality."""
 
 from __future__ import annotations
 
@@ -142,7 +142,7 @@ def test_the_clock_is_said_to_be_set_or_not(outputs: dict[str, str], severity: S
 
 
 class Timed(Examination):
-    """A look whose watch has been made."""
+    """A check after its watch."""
 
     def __init__(self, late_s: list[float]) -> None:
         super().__init__(RIG, FakeComputer(), SimulatedWires(RIG))

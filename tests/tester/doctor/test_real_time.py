@@ -1,4 +1,4 @@
-"""The whole look in real time, over sockets, at a rig that lives in a thread of its own; and a mistake on it."""
+"""The whole check in real time, over sockets, on a rig in its own thread; and a mistake on it."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ pytestmark = pytest.mark.campaign
 
 WATCHED_S = 3.0
 OF_THE_COMPUTER = ("scan",)
-"""How punctual the computer is that runs the test is not judged here, nor what follows from it."""
+"""Punctuality of the test's computer, and its consequences, are not judged here."""
 
 
 @pytest.fixture

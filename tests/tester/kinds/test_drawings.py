@@ -1,4 +1,4 @@
-"""What a kind draws of its machine: values that it has, inside the picture."""
+"""A kind's drawing of its machine: existing values, inside the picture."""
 
 from __future__ import annotations
 

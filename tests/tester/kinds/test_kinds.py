@@ -1,4 +1,4 @@
-"""Kinds of rigs, found by name; a rig file says which it is of."""
+"""Kinds of rigs, found by name; a rig file names its kind."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ SHARE = 0.002
 
 
 def drawn(seed: int, share: float, bend: float = 0.0, **known: float) -> list[FitPoint]:
-    """Return a line of conditions with errors of this share, bent by up to ``bend``, with what is known of them."""
+    """Return a line of conditions with errors of this share, bent by up to ``bend``, and their stated errors."""
     errors = np.random.default_rng(seed).normal(0.0, share, len(XS))
     bent = [bend * (4.0 * (x / XS[-1] - 0.5) ** 2 - 0.5) for x in XS]
     known = {"type_a": share, "df": inf} | known

@@ -17,7 +17,7 @@ from tester.analysis.master_curve.rules import rules_of
 from tests.campaigns.master.synthetic import TS_C, synthetic
 
 TRUE_X = [float(x) for x in (-3.5, 0.5)]
-"""Where the bells of a synthetic set stand; the maxima of their sum are within 0.1 decades of them."""
+"""Places of the bells of a synthetic set; the maxima of their sum are within 0.1 decades of them."""
 RUBBER = FractionalZener(relaxed_pa=1e6, glassy_pa=1e9, tau_s=1e-6, exponent=0.6, shift_c=-3.0)
 """Its loss modulus is greatest at 1 / tau = 1e6 rad/s, its loss factor at (Gr / Gg)^(1 / 2b) / tau = 3162.3 rad/s."""
 

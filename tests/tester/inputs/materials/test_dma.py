@@ -1,4 +1,4 @@
-"""Moduli as instruments write them: recognised, asked for, converted aloud, doubted by name."""
+"""Moduli in instruments' formats: recognised, asked for, converted with a notice, doubted by name."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Names are looked up beside the recipe, in the laboratory's folder, in the package; and become what laws are told."""
+"""Names are looked up beside the recipe, in the laboratory's folder, in the package; and become inputs of laws."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What cannot be so in a table of moduli is refused by name; what is doubtful is named."""
+"""Impossible values in a table of moduli are refused by name; doubtful ones are named."""
 
 from __future__ import annotations
 

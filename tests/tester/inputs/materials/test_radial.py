@@ -1,4 +1,4 @@
-"""The radial spectrum of a map, held against maps whose spectrum is known."""
+"""The radial spectrum of a map, compared with maps of known spectrum."""
 
 from __future__ import annotations
 

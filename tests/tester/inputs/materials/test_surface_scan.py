@@ -94,7 +94,7 @@ def test_a_format_of_instruments_needs_the_extra(monkeypatch: pytest.MonkeyPatch
 
 
 def reader(monkeypatch: pytest.MonkeyPatch, **given: object) -> None:
-    """Put a topography of these attributes in the place of the library's."""
+    """Replace the library's topography by one with these attributes."""
     one = SimpleNamespace(**given)
     monkeypatch.setitem(sys.modules, "SurfaceTopography", SimpleNamespace(read_topography=lambda path: one))
 

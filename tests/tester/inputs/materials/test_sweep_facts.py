@@ -1,4 +1,4 @@
-"""Facts that a sweep gives of itself: their intervals hold the truth, and what points do not allow is left out."""
+"""Facts of a sweep: their intervals contain the truth, and facts that its points do not allow are left out."""
 
 from __future__ import annotations
 
@@ -104,7 +104,7 @@ def test_a_sweep_that_ends_in_the_transition_has_no_plateau_there() -> None:
     warm = sweep_facts(table(0, 0.005, span_c=(-80.0, 10.0)))
     assert warm.rubber is None and warm.glass is not None
     assert any(reason.startswith("E0: E' still changes by") for reason in warm.silent)
-    # All rubber: the cold end is flat, and is no glass.
+    # All rubber: the cold end is flat, and is not a glass.
     rubber = sweep_facts(table(0, 0.005, span_c=(70.0, 100.0)))
     assert ends(rubber)[0] is not None and ends(rubber)[1] is None
     assert any(reason.startswith("Einf:") for reason in rubber.silent)

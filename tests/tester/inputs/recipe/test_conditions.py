@@ -1,4 +1,4 @@
-"""Grids to conditions: what several grids share, measured once or again."""
+"""Grids to conditions: conditions shared by several grids, measured once or again."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a plan foresees of its uncertainty, and what would halve the largest term."""
+"""Predicted uncertainty of a plan, and the change that would halve its largest term."""
 
 from __future__ import annotations
 

@@ -235,7 +235,7 @@ def test_two_grids_that_measure_a_shared_condition_differently_are_refused() -> 
 def test_a_grid_that_measures_its_conditions_again_may_measure_them_differently(again: str) -> None:
     second = f"  - {{{again} slip_velocity: 0.3 m/s, load: 100 N, temperature: 25 degC, repeats: 7}}\n"
     text = SMALL + second
-    if "measure_again" not in again:  # the first of the two says it
+    if "measure_again" not in again:  # the first of the two reports it
         text = text.replace("name: load", "name: load\n    measure_again: true")
     assert len(recipe(text).grids) == 2
 

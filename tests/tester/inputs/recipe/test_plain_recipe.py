@@ -1,4 +1,4 @@
-"""Recipes of a plain machine: steps, estimates, limits, and what is left of them."""
+"""Recipes of a plain machine: steps, estimates, limits, and their remaining steps."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How many repeats a precision takes, and which cannot be reached."""
+"""Repeats needed for a precision, and precisions that cannot be reached."""
 
 from __future__ import annotations
 

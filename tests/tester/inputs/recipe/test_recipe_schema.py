@@ -1,4 +1,4 @@
-"""Keys of a grid are the names of a kind's axes, whatever they are."""
+"""Keys of a grid are the names of the kind's axes."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a specimen came from, what was measured of it, and the checklist when it is put on."""
+"""Origin of a specimen, measurements of it, and the checklist at mounting."""
 
 from __future__ import annotations
 

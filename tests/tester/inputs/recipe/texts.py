@@ -52,7 +52,7 @@ def rig(*overrides: str, accept_risk: str = "") -> RigConfig:
 
 
 def real_rig() -> RigConfig:
-    """Return a rig like the simulated one, but real: people take time there, and any compound will do."""
+    """Return a rig like the simulated one, but real: people need time there, and any compound is accepted."""
     return replace(rig(), simulated=False)
 
 
@@ -62,6 +62,6 @@ def recipe(text: str) -> WheelRecipe:
 
 
 def with_line(old: str, new: str, text: str = SMALL) -> str:
-    """Return a recipe text in which one piece is replaced."""
+    """Return a recipe text with one piece replaced."""
     assert text.count(old) == 1
     return text.replace(old, new)

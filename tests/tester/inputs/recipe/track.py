@@ -65,12 +65,12 @@ class TrackEstimator(Estimator):
         ]
 
     def shut_down_s(self, plan: Plan) -> float:
-        """Return nothing: a track stands at once."""
+        """Return nothing: a track stops at once."""
         return 0.0
 
 
 class TrackPart(RecipePart):
-    """What a track says about recipes."""
+    """A track's rules for recipes."""
 
     kind: ClassVar[str] = "track"
     axes: ClassVar[Axes] = TRACK
@@ -83,7 +83,7 @@ class TrackPart(RecipePart):
                 yield tree.problem((*at, "track_speed", index), f"track_speed: {show(speed, 'm/s')} heats the rubber")
 
     def estimator(self, rig: Rig, repeatability: Mapping[str, float] | None = None) -> TrackEstimator:
-        """Return what tells how long steps take."""
+        """Return the estimator of the steps' times."""
         return TrackEstimator()
 
     def expand(self, recipe: Recipe, rig: Any, estimator: Estimator | None = None) -> Plan:
@@ -108,12 +108,12 @@ class TrackPart(RecipePart):
         return Plan(recipe.recipe, tuple(steps), specimens, 3, metadata_of(recipe), recipe.kind, self.axes)
 
     def remaining(self, plan: Plan, stand: Stand) -> Plan:
-        """Return the conditions that are not over."""
+        """Return the unfinished conditions."""
         left = [one for one in plan.steps if not (isinstance(one, ConditionStep) and one.condition in stand.ended)]
         return replace(plan, steps=tuple(left))
 
     def words(self, step: Step, one: StepEstimate) -> str:
-        """Return what a step does."""
+        """Return the activity of a step."""
         if isinstance(step, RunIn):
             return f"run in {step.distance_mm:g} mm"
         return condition_words(step.setpoint) if isinstance(step, ConditionStep) else step.kind

@@ -1,4 +1,4 @@
-"""Lines that are set otherwise than the profiles of their devices say: a warning, with what to do."""
+"""Lines with settings other than their devices' profiles: a warning, with a remedy."""
 
 from __future__ import annotations
 

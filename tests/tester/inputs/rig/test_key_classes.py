@@ -1,4 +1,4 @@
-"""Classes of keys: what no one may write without a word for it, and what only a real rig's file sets."""
+"""Classes of keys: keys that need an accepted risk, and keys that only a real rig's file sets."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ def test_nonsense_in_a_rig_file_is_refused_without_a_word_for_it(override: str, 
 
 @pytest.mark.parametrize("kind", [*(find(name).rig() for name in PACKAGED), BenchRig])
 def test_every_key_has_a_class(kind: type[Rig]) -> None:
-    """A key of a section, of a row, or of a plain kind that nobody has thought about fails here."""
+    """Fails for an unclassified key of a section, of a row, or of a plain kind."""
     assert [one.key for one in keys_of(kind) if not one.classes] == []
     assert all(any(in_words(one)) and in_words(one)[1] for _, one in classed(kind))
 

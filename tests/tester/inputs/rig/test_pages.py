@@ -1,4 +1,4 @@
-"""The pages that are made from, or speak of, keys and assumptions are up to date."""
+"""The pages made from, or about, keys and assumptions are up to date."""
 
 from __future__ import annotations
 

@@ -28,7 +28,7 @@ SECOND = "devices.second={profile: torque.toml, line: load_cell, unit_id: 9, cha
 
 @pytest.fixture(autouse=True)
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """The folder in which the page is followed."""
+    """The folder for following the page."""
     page = PAGE.read_text(encoding="utf-8")
     profile, part = FILE.search(page), PART.search(page)
     assert profile is not None and part is not None
@@ -46,7 +46,7 @@ def simulation(*overrides: str) -> Simulation:
 
 
 def connected(run: Simulation) -> Simulation:
-    """Go on until the first scans of the run."""
+    """Continue to the first scans of the run."""
     run.until(lambda s: s.run.engine.scans > 40)
     return run
 

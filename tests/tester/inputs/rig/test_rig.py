@@ -1,4 +1,4 @@
-"""The rig file: the packaged one, overrides, what must fit together."""
+"""The rig file: the packaged one, overrides, consistency."""
 
 from __future__ import annotations
 
@@ -185,7 +185,7 @@ def test_a_problem_of_a_file_has_its_line_and_column(tmp_path: Path) -> None:
     text = packaged_text().replace("  load: 440 N ", "  laod: 440 N ")
     line = text[: text.index("laod")].count("\n") + 1
     found = file_problems(tmp_path / "rig.yaml", text)
-    (problem,) = found  # the key that is missing for it is no mistake of its own
+    (problem,) = found  # the missing key is not a second mistake
     assert f'rig.yaml:{line}:3: unknown key "laod", did you mean load?' in problem
 
 

@@ -1,4 +1,4 @@
-"""What fails together: each member is the rig's, and one alone shares nothing."""
+"""Shared failures: each member is the rig's, and a single member shares nothing."""
 
 from __future__ import annotations
 

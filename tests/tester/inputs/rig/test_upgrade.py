@@ -16,7 +16,7 @@ OLD = ("pushed", "clear", "runaway_window", "rolling_offset", "gauge")
 KEYS = (
     "loops.heat.rolling_offset", "interlocks.runaway_window", "interlocks.clear", "interlocks.pushed", "wear.gauge",
 )  # fmt: skip
-"""They, in the order of the packaged file."""
+"""The same keys, in the order of the packaged file."""
 
 
 def without(lines: list[str]) -> list[str]:

@@ -1,4 +1,4 @@
-"""A specimen on a simulated track, ticked by hand: what was measured stays in a list."""
+"""A specimen on a simulated track, ticked by hand: results stay in a list."""
 
 from __future__ import annotations
 
@@ -135,7 +135,7 @@ class TrackBench:
         self.now = later if self.leaps is None else self.leaps.after(self.now, later)
 
     def until(self, reached: Callable[[TrackBench], bool], at_most_s: float) -> TrackBench:
-        """Tick until something is the case; fails where it is not in time."""
+        """Tick until a condition holds; fails on time-out."""
         while not reached(self):
             assert self.now < at_most_s and not self.run.finished, (self.now, self.run.reason, self.kept.events[-5:])
             self.tick()

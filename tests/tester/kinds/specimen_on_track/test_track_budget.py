@@ -1,4 +1,4 @@
-"""What the track's chain contributes: every term's size at one point, reckoned here by hand."""
+"""Contributions of the track's chain: every term's size at one point, calculated here by hand."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ EXPECTED = {
 }
 """Standard uncertainties in mu."""
 OWN = {"cell zero", "specimen to specimen"}
-"""Of each condition, or each specimen, by itself; the others are the rig's."""
+"""Terms of each condition or each specimen; the others are the rig's."""
 
 
 @pytest.mark.parametrize("name", EXPECTED)

@@ -1,4 +1,4 @@
-"""The rig files of a specimen on a track: what has to fit together in them."""
+"""The rig files of a specimen on a track: consistency."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What control commands, and what each row looks at: what is not known is on the tripped side."""
+"""Commands of the control, and the inputs of each row: an unknown input trips."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ def test_a_row_that_is_seldom_evaluated_holds_in_every_scan_in_which_its_conditi
 
 
 def unknown(name: str, value: object = nan) -> Callable[[TrackInputs], None]:
-    """Return what makes a reading unknown."""
+    """Return a change that makes a reading unknown."""
     return lambda v: setattr(v.readings, name, value)
 
 
@@ -158,7 +158,7 @@ def test_a_stop_while_the_arm_comes_down_stops_it_there() -> None:
 
 
 def followed(seconds: float, gone_m_s: float, told_m_s: float = 1e-6) -> WayMonitor:
-    """Return a monitor that has seen a track go so, told to go otherwise."""
+    """Return a monitor of a track that moves differently from its command."""
     monitor = WayMonitor(0.02)
     for number in range(1, round(seconds / 0.05) + 1):
         monitor.follow(0.05 * number, gone_m_s * 0.05 * number, told_m_s, 0.05)

@@ -1,4 +1,4 @@
-"""Laws that are made of the recipe's compound and abrasive: checked before a run, told in an estimate, rubbed by."""
+"""Laws made of the recipe's compound and abrasive: checked before a run, shown in an estimate, used by the twin."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def tables(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
 
 
 def problems(tmp_path: Path, text: str, *overrides: str) -> list[str]:
-    """Return what is wrong with a recipe, with the lines."""
+    """Return the problems of a recipe, with the lines."""
     path = tmp_path / "recipe.yaml"
     path.write_text(text, encoding="utf-8")
     try:
@@ -57,7 +57,7 @@ def test_a_run_measures_what_the_law_says() -> None:
 
 
 class BySurface:
-    """A law of materials that is known at once: a coefficient for each surface."""
+    """A law of materials without tables: a coefficient for each surface."""
 
     def __init__(self, surface: Surface) -> None:
         self.coefficient = {"S0": 0.9, "glass": 0.6}[surface.name]

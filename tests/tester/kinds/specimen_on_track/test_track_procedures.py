@@ -1,4 +1,4 @@
-"""What a run does, row by row, on both packaged rigs."""
+"""Events of a run, row by row, on both packaged rigs."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from tests.tester.kinds.specimen_on_track.bench import DISC, GROSCH, TrackBench
 
 @pytest.fixture(scope="module", params=["grosch", "pin-on-disc"])
 def done(request: pytest.FixtureRequest) -> TrackBench:
-    """A short run without scatter, gone through to its end."""
+    """A short run without scatter, done to its end."""
     return TrackBench(request.param, overrides=("sim.scatter=0",)).to_the_end()
 
 

@@ -1,4 +1,4 @@
-"""Recipes for a specimen on a track: what is refused, the plan, what is left of it."""
+"""Recipes for a specimen on a track: refusals, the plan, its remaining steps."""
 
 from __future__ import annotations
 

@@ -19,7 +19,7 @@ from tests.tester.tui.test_replay import replay
 
 @pytest.fixture(scope="module")
 def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run that its operator has stopped in the second row, on the wet disc."""
+    """A run stopped by its operator in the second row, on the wet disc."""
     home = tmp_path_factory.mktemp("disc")
     (home / "disc.yaml").write_text(DISC, encoding="utf-8")
     arguments = ["--rig", "pin-on-disc", "--yes", "--out", str(home / "runs"), "--fault", "t=28 s: operator stop"]
@@ -29,7 +29,7 @@ def stopped(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def run(stopped: Path) -> Path:
-    """The same run, gone on with to its end."""
+    """The same run, resumed to its end."""
     assert invoke(["resume", str(stopped), "--yes"]) == 0
     return stopped
 

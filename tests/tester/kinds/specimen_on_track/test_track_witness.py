@@ -1,5 +1,5 @@
-"""What shows contact on a wet track at a coefficient of 0.02: the height of the arm, and friction that is not a deaf
-cell's."""
+"""Signs of contact on a wet track at a coefficient of 0.02: the height of the arm, and friction that a dead cell does
+not show."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def without_witness(v: TrackInputs) -> None:
 
 
 def reading(name: str, value: object) -> Callable[[TrackInputs], None]:
-    """Return what sets a reading."""
+    """Return a function that sets a reading."""
     return lambda v: setattr(v.readings, name, value)
 
 

@@ -56,7 +56,7 @@ AT_ONCE = SHORT.replace("25 degC", "23 degC")
 """The same in a minute: the simulated room's 22 degC are within its band. Without noise the band can be left early."""
 
 QUIET = ("sim.noise=0", "sim.scatter=0", "sim.running_in=0")
-"""Overrides for a rig whose coefficient stands still from the first turn."""
+"""Overrides for a rig whose coefficient is steady from the first turn."""
 
 HOT = ("sim.friction_heat_fraction=0.5", "sim.belt_conductance=0.3")
 """The hot rig: two kelvin take a fraction of a second."""
@@ -141,15 +141,15 @@ class Bench:
     zero_n: float = 0.0
     """What the unloaded cell shows of the normal force without a tare, N."""
     pressed_mm: float = 11.0
-    """Where the press stands in contact, mm."""
+    """Press position in contact, mm."""
     off_n: float = 0.0
-    """How far the load in contact is off its demand, N."""
+    """Error of the load in contact, N."""
     warming_k_s: float = 0.0
     """How fast the surface warms in slip, K/s."""
     returning_k_s: float = 0.0
-    """How fast it goes back to the temperature that is demanded, K/s."""
+    """How fast it returns to the demanded temperature, K/s."""
     demands: list[Demand] = field(default_factory=list[Demand])
-    """The demand of every scan, when it left; equal ones in turn are one object."""
+    """The sent demand of every scan; equal successive ones are one object."""
     _demand: Demand = field(default_factory=Demand)
 
     @property
@@ -185,13 +185,13 @@ class Bench:
     def until(
         self, activity: Activity[Context], reached: Callable[[], bool], at_most_s: float = 600.0, dt: float = 0.01
     ) -> None:
-        """Step an activity until something is the case, and see that it is not done before."""
+        """Step an activity until a condition holds; fail if it is done before."""
         began = self.ctx.now
         while not reached():
             assert not self.scan(activity, dt) and self.ctx.now - began < at_most_s
 
     def hold(self, activity: Activity[Context], seconds: float, dt: float = 0.01) -> None:
-        """Step an activity for a while and see that it is not done."""
+        """Step an activity for a while; fail if it is done."""
         for _ in range(round(seconds / dt)):
             assert not self.scan(activity, dt)
 
@@ -238,7 +238,7 @@ def make_bench(config: RigConfig | None = None, *, automatic: bool = True) -> Be
 
 
 class Scan(NamedTuple):
-    """What a scan saw."""
+    """The inputs of a scan."""
 
     at_s: float
     title: str
@@ -325,11 +325,11 @@ class Simulation:
 
 
 def in_burst(simulation: Simulation) -> bool:
-    """Tell whether a burst is under way and counts."""
+    """Return whether a burst is under way and counts."""
     ctx = simulation.ctx
     return ctx.burst > 0 and ctx.gate == 0
 
 
 def in_contact(simulation: Simulation) -> bool:
-    """Tell whether the wheel carries its load."""
+    """Return whether the wheel carries its load."""
     return simulation.ctx.readings.force_z_n > 150.0

@@ -1,4 +1,4 @@
-"""What takes the jacket's heat when the PC is silent: a rig file says it where the controller has no lease."""
+"""The jacket's heat when the PC is silent: without a lease the rig file names what switches it off."""
 
 from __future__ import annotations
 

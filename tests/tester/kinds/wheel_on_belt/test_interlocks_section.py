@@ -1,4 +1,4 @@
-"""The section ``interlocks``: made from the rows, so names that the program asks it for are looked up here."""
+"""The section ``interlocks``: made from the rows, so the program's attribute names are checked here."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ OTHER_KIND = SOURCE / "kinds" / "specimen_on_track"
 
 
 def asked(tree: ast.AST) -> Iterator[str]:
-    """Return the fields of the section that a module asks for: directly, or through a name in the same function."""
+    """Return the fields of the section that a module reads: directly, or through a name in the same function."""
     for scope in ast.walk(tree):
         if not isinstance(scope, ast.FunctionDef | ast.Module):
             continue
@@ -32,7 +32,7 @@ def asked(tree: ast.AST) -> Iterator[str]:
 
 
 def is_section(node: ast.expr) -> bool:
-    """Tell whether an expression is a rig's section of interlocks, and not the table that a kind is asked for."""
+    """Return whether an expression is a rig's section of interlocks, and not a kind's table."""
     if not (isinstance(node, ast.Attribute) and node.attr == "interlocks"):
         return False
     called = node.value.func if isinstance(node.value, ast.Call) else None

@@ -1,4 +1,4 @@
-"""The heat in a contact of which one part stands: its law, what `check` refuses without the relay, what runs name."""
+"""The heat in a contact with one part at rest: its law, refusals of `check` without the relay, warnings of runs."""
 
 from __future__ import annotations
 

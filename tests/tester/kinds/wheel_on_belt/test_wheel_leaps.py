@@ -1,4 +1,4 @@
-"""Leaps on a wheel: its rest and its cool-downs pass without scans, and what is measured afterwards stays the same."""
+"""Leaps on a wheel: its rest and its cool-downs pass without scans, and later measurements stay the same."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The steps of a track's commissioning on the twin: clean rigs pass, and what is wrong is refused with a remedy."""
+"""The steps of a track's commissioning on the twin: clean rigs pass, and faults are refused with a remedy."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Commissioning of a track on the twin, with a machine that may differ from what the rig file believes."""
+"""Commissioning of a track on the twin, with a machine that may differ from its rig file."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class TrackTwin:
         person: TrackPerson | None = None,
         run_recipe: Callable[[str, str], Mapping[str, Any]] = no_recipe,
     ) -> None:
-        """``machine``: the real one, ``rig`` by default; ``built``: what was done to it."""
+        """``machine``: the real one, ``rig`` by default; ``built``: changes to it."""
         self.rig, self.machine, self.built, self.seed = rig, machine or rig, built, seed
         self.person = person or TrackPerson()
         self.said: list[str] = []

@@ -24,7 +24,7 @@ from tester.store.writer import RunWriter
 SPEEDS_M_S = tuple(10.0 ** (-6.0 + 0.5 * i) for i in range(9))
 TEMPERATURES_C = tuple(-40.0 + 10.0 * i for i in range(11))
 WARM_K = 0.3
-"""What was measured is warmer than what was asked for."""
+"""Measured minus requested temperature."""
 _SBR = WlfBell(WlfBellParameters())
 
 
@@ -54,7 +54,7 @@ def made_track_run(
     """Write a finished run of conditions, numbered from 1 in order of compound, interface, temperature and speed.
 
     ``scatter``: standard deviation of ln mu of a repeat. By number: ``carried`` have a flag of doubt, ``failed`` no
-    value. ``law_name``: what the rig file calls its law of friction. Returns its folder.
+    value. ``law_name``: name of the law of friction in the rig file. Returns its folder.
     """
     folder.mkdir(parents=True)
     random = np.random.default_rng(seed)

@@ -1,4 +1,4 @@
-"""Laws fitted to a specimen on a track: they are the simulator's, and what was put in comes back."""
+"""Laws fitted to a specimen on a track: they are the simulator's, and fits recover their parameters."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ ZENER = FractionalZener(1e6, 1e9, 1e-6, 0.6, shift_c=-3.0)
 
 
 class Shelf:
-    """Where the tests' materials are: a track of two waves, and one of a spectrum with its rubber."""
+    """Folder of the tests' materials: a track of two waves, and one of a spectrum with its rubber."""
 
     def rubber(self, name: str) -> Rubber:
         known = {"SBR": rubber(), "Zener": Rubber("Zener", ZENER)}
@@ -180,7 +180,7 @@ def test_the_band_of_a_compounds_reference_is_that_of_its_file() -> None:
     assert next(one for one in bound.parameters if one.name == "t_ref").band[:2] == (-18.0, 12.0)
 
 
-@pytest.mark.filterwarnings("error")  # NumPy prints its with a path
+@pytest.mark.filterwarnings("error")  # NumPy prints its name with a path
 def test_a_degenerate_greta_is_named() -> None:
     own = [replace(one, type_a=0.01, df=50.0) for one in points(lambda *_: 0.8, noise=0.01)]
     found = fit_group(PART.bound(GRETA, GROUP, "", {}), GROUP, own, PART.cells, count=99)

@@ -1,4 +1,4 @@
-"""The first coefficient: of which compound, at which temperature, and whether it can be."""
+"""The first coefficient: compound, temperature, plausibility."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Jogging on the twin: directions, scales, bounds, and what ends it."""
+"""Jogging on the twin: directions, scales, bounds, and its end."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NAMES = [axis.name for axis in AXES]
 
 
 def watched(monkeypatch: pytest.MonkeyPatch, look: Callable[[WheelRig], None]) -> None:
-    """Look at the machine at every tick."""
+    """Inspect the machine at every tick."""
     advance = WheelRig.advance
 
     def and_look(world: WheelRig, now: float) -> None:
@@ -35,7 +35,7 @@ def watched(monkeypatch: pytest.MonkeyPatch, look: Callable[[WheelRig], None]) -
 def scaled(rig: RigConfig, name: str, factor: float) -> RigConfig:
     """Return a machine whose axis moves ``factor`` times as far as the rig file says: it needs fewer counts.
 
-    No standstill relay takes the torque of what is too fast.
+    No standstill relay removes the torque at overspeed.
     """
     axis = getattr(rig.axes, name)
     new = replace(

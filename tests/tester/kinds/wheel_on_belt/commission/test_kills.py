@@ -1,8 +1,8 @@
-"""A commissioning that is killed in any step, at a question or while something moves, goes on with the same results.
+"""A commissioning killed in any step, at a question or in motion, resumes with the same results.
 
 The kill is a crash: a process of its own ends without another instruction, wires, record and locks as they are. Then
-the same command is given again. Each step begins from the record of the steps before it, as they were done without a
-kill; the step that was killed has to end with what it ended with there.
+the same command is given again. Each step begins from the record of the steps before it, done without a kill;
+the killed step must end with the same result as without a kill.
 
 All kills, some minutes of CPU: ``pytest -m campaign tests/tester/kinds/wheel_on_belt/commission/test_kills.py``.
 """
@@ -36,7 +36,7 @@ QUICK = NAMES[: NAMES.index("directions")]
 KILLED = 41
 """Exit code of a process that was killed."""
 SHARES = (0.05, 0.3, 0.6, 0.95)
-"""Of a step's rig time: when it is killed in motion."""
+"""Share of a step's rig time at which it is killed in motion."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,12 +80,12 @@ def done(out: Path, person: Mortal) -> CommissionOutcome:
 
 
 def record_of(out: Path) -> CommissionRecord:
-    """Read the record, which raises where it does not hold together."""
+    """Read the record; raises where it is inconsistent."""
     return CommissionRecord(record_path(out, load_rig("sim", ()).name), str, "")
 
 
 def killed(out: Path, kill: Kill) -> bool:
-    """Give the command in a process that is killed; tell whether it was, before it came to an end."""
+    """Give the command in a process that is killed; return whether the kill came before its end."""
     child = os.fork()
     if child == 0:
         try:
@@ -106,7 +106,7 @@ def killed(out: Path, kill: Kill) -> bool:
 
 @dataclass(frozen=True, slots=True)
 class Whole:
-    """A commissioning that nobody killed."""
+    """A commissioning without a kill."""
 
     lines: list[bytes]
     questions: dict[str, int]
@@ -120,7 +120,7 @@ class Whole:
         path.write_bytes(b"".join(line + b"\n" for line in self.lines[:begun]))
 
     def values(self, step: str) -> dict[str, Any]:
-        """Return what a step ended with."""
+        """Return the result of a step."""
         entries = [json.loads(line) for line in self.lines]
         return next(one["values"] for one in entries if one["step"] == step and one["what"] == DONE)
 
@@ -142,12 +142,12 @@ def whole(out: Path, until: str) -> Whole:
 
 @pytest.fixture(scope="module")
 def unkilled(tmp_path_factory: pytest.TempPathFactory) -> Whole:
-    """Up to the first recipe that is run: recipes take longer than all before them."""
+    """The steps before the first recipe: recipes take longer than all of them."""
     return whole(tmp_path_factory.mktemp("whole"), QUICK[-1])
 
 
 def same(found: Any, wanted: Any) -> bool:
-    """Tell whether two results are the same: a run's name and when it was are its own."""
+    """Return whether two results are equal, apart from a run's name and time."""
     return {**found, "run": ""} == {**wanted, "run": ""}
 
 
@@ -214,7 +214,7 @@ _ENTIRE: list[Whole] = []
 
 
 def _entire(factory: pytest.TempPathFactory) -> Whole:
-    """Return the whole way, done once for all tests of this process."""
+    """Return the complete commissioning, done once for all tests of this process."""
     if not _ENTIRE:
         _ENTIRE.append(whole(factory.mktemp("entire"), NAMES[-1]))
     return _ENTIRE[0]

@@ -1,4 +1,4 @@
-"""Commissioning names every mistake of its list, and nothing on a clean rig."""
+"""Commissioning names every mistake of its list, and none on a clean rig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The standstill relay is provoked by a halted belt and a halted wheel; one that does not act is named."""
+"""The standstill relay is provoked by a halted belt and a halted wheel; a relay that does not act is named."""
 
 from __future__ import annotations
 

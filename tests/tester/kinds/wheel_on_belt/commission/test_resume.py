@@ -1,4 +1,4 @@
-"""A commissioning that is killed goes on where it stands; a changed rig file undoes what depends on it."""
+"""A killed commissioning resumes where it stopped; a changed rig file undoes the steps that depend on it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Where a settling temperature goes, from its tail, with an uncertainty that holds."""
+"""The end of a settling temperature, from its tail, with a valid uncertainty."""
 
 from __future__ import annotations
 
@@ -15,13 +15,13 @@ NOISE_K = 0.07
 
 
 def temperature(t: float) -> float:
-    """Return the surface over a hub that was heated: two modes, the faster one opposed, so that it begins level."""
+    """Return the surface over a hub that was heated: two modes, the faster one opposed, so that it starts flat."""
     slow, fast = TIME_S / (TIME_S - RISE_S), RISE_S / (TIME_S - RISE_S)
     return END_C - STEP_K * (slow * exp(-t / TIME_S) - fast * exp(-t / RISE_S))
 
 
 def settled(seed: int, sure_k: float) -> tuple[float, float, float]:
-    """Return the end, its standard uncertainty, and when that was as small, s."""
+    """Return the end, its standard uncertainty, and the time when that was reached, s."""
     noise, fit = NormalStream(seed, "settling"), SettlingFit()
     for number in range(200):
         fit.add(temperature(MEAN_S * number) + NOISE_K * noise.next())

@@ -23,7 +23,7 @@ ADVICE = re.compile(r"screw.spring: ([\d.]+) N; axes.press.screw.spring_rate: ([
 
 
 def keys(spring_n: float, rate: float) -> tuple[str, str, str]:
-    """Return the rig file's lines for a spring: one that grows takes more of the press's torque on a worn wheel."""
+    """Return the rig file's lines for a spring: a growing one takes more of the press's torque on a worn wheel."""
     return (f"axes.press.screw.spring={spring_n:g} N", f"axes.press.screw.spring_rate={rate:g} N/mm",
             "limits.load=400 N")  # fmt: skip
 

@@ -1,4 +1,4 @@
-"""Watchdogs are provoked one by one in front of a person, with what each device read back; a deaf one is named."""
+"""Watchdogs are provoked one by one in front of a person, with their read-back values; a dead one is named."""
 
 from __future__ import annotations
 
@@ -74,7 +74,7 @@ def test_the_belt_creeps_at_each_proof_and_nothing_moves_before_go(tmp_path: Pat
 
 
 class Deafens(TwinPerson):
-    """Before a watchdog is tried out it has been switched off at the device, whatever that has read back."""
+    """Switch a watchdog off at the device before its trial, whatever the device reads back."""
 
     def __init__(self, at: str) -> None:
         super().__init__()

@@ -1,4 +1,4 @@
-"""Commissioning on the twin, with a machine that may differ from what the rig file believes."""
+"""Commissioning on the twin, with a machine that may differ from its rig file."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ def no_recipe(name: str, text: str) -> Mapping[str, Any]:
 
 
 class Clock:
-    """A wall clock that goes on by a second at each look."""
+    """A wall clock that advances by a second at each reading."""
 
     def __init__(self) -> None:
         self.seconds = 0
@@ -43,7 +43,7 @@ class Clock:
 
 
 class Watched:
-    """A simulated rig that is looked at in each of its ticks: other than polls, such looks do not hang on wall time."""
+    """A simulated rig with a callback in each of its ticks, which, other than polls, does not depend on wall time."""
 
     def __init__(self, rig: WheelRig, look: Callable[[WheelRig], None]) -> None:
         self._rig = rig
@@ -75,8 +75,8 @@ class Bench:
         given: Mapping[str, str] | None = None,
         look: Callable[[WheelRig], None] = nothing,
     ) -> None:
-        """``machine``: what it is really like, ``rig`` unless it says; ``built``: what was done to it; ``look``: what
-        is looked at, or done, in each of its ticks."""
+        """``machine``: the real one, ``rig`` by default; ``built``: changes to it; ``look``: callback in each of its
+        ticks."""
         self.rig = rig or believed()
         self.machine = machine or self.rig
         self.said: list[str] = []

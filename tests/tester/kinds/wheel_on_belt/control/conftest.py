@@ -17,7 +17,7 @@ from tester.machine.state import ControlEvent, Mode
 STAMPS = ("wheel_at_s", "belt_at_s", "press_at_s", "positions_at_s", "cell_at_s", "surface_at_s",
           "jacket_at_s", "cell_changed_s", "surface_changed_s", "inputs_at_s",
           "can_heard_s", "wheel_changed_s")  # fmt: skip
-"""When each source last reported, and reported something new."""
+"""Times of each source's latest report and latest new value."""
 
 
 @pytest.fixture(scope="session")
@@ -33,7 +33,7 @@ class Bench:
     readings: Readings
     demand: Demand
     stale: set[str] = field(default_factory=set[str])
-    """Stamps that stand still."""
+    """Stamps that do not advance."""
     screws: bool = True
     """The press's torque follows from the force, between the least and the most of its friction."""
     shafts: bool = True
@@ -76,7 +76,7 @@ class Bench:
         return out
 
     def until_trip(self, at_most_s: float, dt: float = 0.01) -> float:
-        """Scan until something trips; return the seconds it took (inf: nothing did)."""
+        """Scan until a row trips; return the seconds it took (inf: no trip)."""
         began = self.readings.now_s
         while self.readings.now_s - began < at_most_s:
             self.scan(dt)
@@ -114,7 +114,7 @@ def make_bench(rig: RigConfig) -> Bench:
     readings.cell_at_s = readings.surface_changed_s = readings.inputs_at_s = readings.can_heard_s = readings.now_s
     readings.wheel_speed_m_s = readings.belt_speed_m_s = readings.force_z_n = readings.force_x_n = 0.0
     assert control.start(readings) == ""
-    # As the rig would be after a while in this step: rubber in balance with surface and hub.
+    # The rig after a while in this step: rubber in balance with surface and hub.
     readings.wheel_speed_m_s, readings.belt_speed_m_s, readings.force_z_n, readings.force_x_n = 0.8, 0.5, 200.0, 146.0
     made.scans(2.0)
     assert state.mode is Mode.RUN and state.trip is None, state.trip

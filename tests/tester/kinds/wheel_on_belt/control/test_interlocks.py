@@ -1,4 +1,4 @@
-"""Every row of the interlock table: its cause trips it at its delay and not before, and unknown counts as the cause."""
+"""Every row of the interlock table: its cause, or an unknown input, trips it at its delay and not before."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def _stale(*stamps: str) -> Break:
 
 
 def _rolling(bench: Bench) -> None:
-    """Take the slip out, so that only the load is of interest."""
+    """Remove the slip, so that only the load matters."""
     bench.readings.slip_m_s = bench.readings.force_x_n = 0.0
 
 
@@ -77,7 +77,7 @@ def _stuck(bench: Bench) -> None:
 
 
 def _line_open(bench: Bench) -> None:
-    """Full output, hub well below its setpoint, no rise: for all but a moment of the time that takes."""
+    """Full output, hub well below its setpoint, no rise: until a moment before the trip."""
     bench.readings.heat_percent = 100.0
     _hub(40.0)(bench)
     bench.demand.freeze_heat = True
@@ -86,7 +86,7 @@ def _line_open(bench: Bench) -> None:
 
 
 def _hidden_heat(bench: Bench) -> None:
-    """The heater gives what nothing shows, then a power that is shown."""
+    """The heater gives a power that no reading shows, then one that readings show."""
     heat = bench.control.view.heat
     heat.unseen_k, heat.put_w = 5.2, heat.shown_w
 
@@ -103,17 +103,17 @@ def _lacking(off_k: float) -> Break:
 
 
 def _ungiven_heat(bench: Bench) -> None:
-    """More heat shows than the heater gives."""
+    """The readings show more heat than the heater gives."""
     bench.control.view.heat.ungiven_k = 9.0
 
 
 def _frozen_hub(bench: Bench) -> None:
-    """The hub's reading stands although more is given."""
+    """The hub's reading stays constant although the heater gives more."""
     bench.control.view.heat.still_k = 31.0
 
 
 def _sprung(off_share: float) -> Break:
-    """The press's torque was off what its spring takes, in free travel."""
+    """The press's torque differed from its spring's, in free travel."""
 
     def apply(bench: Bench) -> None:
         bench.control.view.free.off_share = off_share
@@ -126,7 +126,7 @@ def _torn(bench: Bench) -> None:
 
 
 def _touched(press_mm: float) -> Break:
-    """Say that the wheel was touched here."""
+    """Set the touch of the wheel to this position."""
 
     def apply(bench: Bench) -> None:
         bench.state.load.contact_mm = press_mm
@@ -284,7 +284,7 @@ QUICKER = {
     ("heating at standstill", 1): "drive standing under load", ("surface off model", 2): "thermometer frozen",
     ("surface off model", 0): "hub hotter than shown", ("surface off model", 1): "hub hotter than shown",
 }  # fmt: skip
-"""A cause may raise several levels: for these the row that trips first is another."""
+"""A cause may raise several levels: for these another row trips first."""
 
 
 @pytest.mark.parametrize(("name", "number"), CASES)
@@ -387,7 +387,7 @@ def test_a_trip_makes_the_outputs_safe_in_the_same_scan(bench: Bench, name: str)
 
 @pytest.mark.parametrize("name", sorted(set(CAUSES) - {"hub sensor jump", "surface sensor jump", "load cell frozen"}))
 def test_an_acknowledgement_with_the_cause_still_there_is_refused(bench: Bench, name: str) -> None:
-    """Rows of the load and of speeds are gone once the rig stands lifted: then nothing is left to refuse for."""
+    """Rows of the load and of speeds are no longer active once the rig is lifted and at rest."""
     CAUSES[name][0](bench)
     bench.until_trip(40.0)
     r = bench.readings
@@ -396,7 +396,7 @@ def test_an_acknowledgement_with_the_cause_still_there_is_refused(bench: Bench, 
     bench.state.cooled = True
     bench.scans(12.0)
     assert bench.state.mode is Mode.LATCHED
-    asked = ("guard open", "thermometer silent", "surface not valid")  # watched only while wanted, asked now
+    asked = ("guard open", "thermometer silent", "surface not valid")  # watched only while wanted, read now
     holding = bench.state.held or name in asked
     assert bench.control.request_ack(r.now_s) == ""
     bench.scans(1.5)
@@ -560,7 +560,7 @@ def test_a_hub_that_was_heated_at_full_power_until_now_is_no_stuck_heater(bench:
 
 
 def _long_off(bench: Bench, hub_c: float) -> None:
-    """Leave the heat off for longer than setpoints count, with a hub that stays hot."""
+    """Leave the heat off for longer than setpoints are valid, with a hub that stays hot."""
     bench.demand.surface_c = NAN
     bench.readings.heat_percent, bench.readings.contactor_closed = 0.0, False
     bench.control.view.jacket.forget(bench.readings.now_s)

@@ -1,4 +1,4 @@
-"""The thermal observer against the simulator's finer wheel, with what it believes off by 30 %."""
+"""The thermal observer against the simulator's finer wheel, with its parameters off by 30 %."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ def greatest_error_k(rig: RigConfig, phi: float, belt: float, hub: float, *, off
     """Heat to a hub of 120 degC in rolling contact with slip pulses, 40 min; return the greatest |surface - model|.
 
     ``phi``, ``belt``, ``hub``: factors on the true wheel's share of friction heat, its conductance to the belt and its
-    hub's heat capacity. ``offset_k``: what the thermometer reads too low.
+    hub's heat capacity. ``offset_k``: by how much the thermometer reads low.
     """
     sim = rig.sim
     thermal = replace(sim.thermal, hub_capacity=hub * sim.thermal.hub_capacity)

@@ -1,4 +1,4 @@
-"""Cool-down and rest: what turns, comes, presses or heats although nothing is wanted is noticed and taken off."""
+"""Cool-down and rest: unwanted turning, contact, load or heat is detected and removed."""
 
 from __future__ import annotations
 
@@ -174,7 +174,7 @@ def test_a_contactor_that_closes_by_itself_at_rest_is_latched(bench: Bench, sign
 
 
 def rest_in_run(bench: Bench, *, attended: bool = False) -> None:
-    """Begin a run that does not want its drives yet; ``attended``: with a question."""
+    """Begin a run that does not need its drives yet; ``attended``: with a question."""
     rest(bench)
     demand = bench.demand
     demand.press, demand.load_n, demand.surface_c = Press.LIFT, 0.0, nan

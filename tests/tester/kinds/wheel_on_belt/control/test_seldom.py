@@ -1,4 +1,4 @@
-"""Rows that are evaluated only after a change of what they read: whatever changes, each scan knows what holds."""
+"""Rows evaluated only after a change of their inputs: after any change, each scan has their present state."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def test_no_wanted_temperature_is_no_change(bench: Bench) -> None:
     asked: list[object] = []
     table.after_change.any_holds = lambda v: asked.append(v) is not None
     for text, times in (("41", 1), ("nan", 2), ("nan", 2), ("nan", 2), ("41", 3)):
-        view.demand.surface_c = float(text)  # another object each time, as steps make it
+        view.demand.surface_c = float(text)  # a new object each time, as steps make it
         table.held(view)
         assert len(asked) == times
 

@@ -12,7 +12,7 @@ from tests.tester.kinds.wheel_on_belt.control.conftest import Bench
 
 
 def settle(bench: Bench, *, lifted: bool = True, standing: bool = True) -> None:
-    """Let the readings follow a stop."""
+    """Make the readings follow a stop."""
     r = bench.readings
     r.heat_percent = 0.0
     r.contactor_closed = False

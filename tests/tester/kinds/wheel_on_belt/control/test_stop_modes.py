@@ -1,4 +1,4 @@
-"""Stops that do not work: every action is verified, and what has not happened in its time is escalated."""
+"""Stops that do not work: every action is verified, and an action that misses its time is escalated."""
 
 from __future__ import annotations
 
@@ -289,7 +289,7 @@ def test_a_stop_that_cannot_end_takes_the_power_off_and_latches(bench: Bench) ->
     lift(bench)
     stand(bench)
     cool(bench)
-    bench.readings.press_mm = 9.0  # it never gets back to where lifted is
+    bench.readings.press_mm = 9.0  # it never gets back to the lifted position
     bench.scans(1.8)
     assert bench.state.mode is Mode.STOPPING and bench.state.trip is None
     out = bench.scans(1.2)

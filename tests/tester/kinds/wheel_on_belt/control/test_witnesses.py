@@ -37,7 +37,7 @@ def test_a_change_of_force_that_the_press_explains_is_no_step(bench: Bench) -> N
     [("least", 19.0, ""), ("least", 21.0, "press torque"), ("most", -19.0, ""), ("most", -21.0, "press torque")],
 )
 def test_a_force_outside_what_the_torque_allows(bench: Bench, witness: str, off_n: float, row: str) -> None:
-    """The torque is that at which the least, or the greatest, force it can mean is this far from the one shown."""
+    """Set the torque whose least, or greatest, possible force is this far from the reading."""
     bench.screws = False
     band, force_n = bench.control.view.press_band, bench.readings.force_z_n + off_n + 40.0
     if witness == "least":
@@ -79,7 +79,7 @@ def test_shafts_that_take_another_power_than_friction(bench: Bench, sign: float,
     bench.shafts = False
     share = 0.05
     through_w = 116.8 + 73.0
-    # What is added at the wheel goes round, too.
+    # Power added at the wheel also circulates.
     off_w = sign * (30.0 + share * through_w + beyond_w) / (1.0 - sign * share)
     bench.readings.drive_torque_nm += off_w / bench.readings.wheel_rad_s
     assert first(bench) == row
@@ -111,7 +111,7 @@ def test_a_belt_drive_that_takes_another_torque_than_friction(
 
 @pytest.mark.parametrize("angle_deg", [30.0, -30.0])
 def test_a_wheel_at_an_angle_asks_of_the_belt_what_both_forces_have_along_it(bench: Bench, angle_deg: float) -> None:
-    """At 30 deg a slip of (0.37, 0.25) m/s: 146 N of friction, of which 64 N along the belt."""
+    """At 30 deg a slip of (0.37, 0.25) m/s: 146 N of friction, 64 N of it along the belt."""
     r, angle = bench.readings, math.radians(angle_deg)
     r.positions["sideslip"] = bench.demand.positions["sideslip"] = angle_deg
     along, across = 0.8 - 0.5 * math.cos(angle), 0.5 * math.sin(angle)
@@ -139,7 +139,7 @@ def test_a_belt_drive_that_does_what_friction_does_trips_at_once(
 
 
 def test_a_belt_drive_pulls_at_will_while_nothing_slides_for_sure(bench: Bench) -> None:
-    """Rolling, friction may act either way: only the load cell says which."""
+    """Rolling, friction may act either way: only the load cell shows its direction."""
     bench.demand.belt_speed_m_s = bench.readings.belt_speed_m_s = 0.78
     bench.control.view.belt.begin(0.78)
     bench.state.setpoints.belt_m_s = 0.78
@@ -152,7 +152,7 @@ def test_a_belt_drive_pulls_at_will_while_nothing_slides_for_sure(bench: Bench) 
 def test_rolling_the_load_cell_says_at_once_what_the_belt_drive_should_do_only_while_scans_are_slow(
     bench: Bench, scan_s: float, row: str
 ) -> None:
-    """While something is told to change, Fx and torque of two times may be of two directions."""
+    """While a command changes, Fx and torque, read at two times, may have opposite signs."""
     bench.demand.belt_speed_m_s = bench.readings.belt_speed_m_s = 0.8
     bench.control.view.belt.begin(0.8)
     bench.state.setpoints.belt_m_s = 0.8

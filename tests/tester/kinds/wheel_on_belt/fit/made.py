@@ -19,7 +19,7 @@ from tests.tester.store.build import CONDITION, PIECE, RUN, SPECIMENS, open_writ
 SPREAD = (0.99, 1.0, 1.01)
 """Of three repeats about their mean."""
 LOAD_OFF_N, WARM_K = -3.0, 0.4
-"""What was measured is not what was asked for."""
+"""Measured minus requested load and temperature."""
 
 
 def made_run(

@@ -57,7 +57,7 @@ def test_a_search_from_redundant_parameters_ends_at_the_same_fit(scale: float) -
                      a2=given.a2 / scale)  # fmt: skip
     problem = FitProblem(PAPER, points, {})
     ends = [problem.logarithms(solve(problem, [joint_of(start)])) for start in (given, scaled)]
-    assert ends[0] == pytest.approx(ends[1], abs=1e-9)  # where the search stops, not what is least
+    assert ends[0] == pytest.approx(ends[1], abs=1e-9)  # where the search stops, not the minimum
 
 
 def test_the_factor_of_table_3_is_1_at_25_degc() -> None:

@@ -1,4 +1,4 @@
-"""Why no master curve is made of what a wheel measured."""
+"""Why a wheel's conditions make no master curve."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The paper held against its own appendices."""
+"""The paper compared with its own appendices."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ AS_INFERRED = {
     "v2, fitted to appendix A": (6.4, 5.1, 23.2, 37, 64),
     "v2, fitted to A and B (*)": (4.3, 3.8, 19.6, 50, 73),
 }
-"""Mean, median, largest error in %, rows within 5 and 10 %, of an independent calculation, which had inferred rows."""
+"""Mean, median, largest error in %, rows within 5 and 10 %, of an independent calculation with inferred rows."""
 
 
 @pytest.mark.parametrize("way", [*EXPECTED, *AS_INFERRED])

@@ -27,7 +27,7 @@ grids:
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a copy of the tree in which the page has been followed."""
+    """Return a copy of the tree with the page's changes."""
     tree = tmp_path_factory.mktemp("tree")
     for name in ("tester", "drivers", "sim", "recipes"):
         shutil.copytree(ROOT / name, tree / name, ignore=shutil.ignore_patterns("__pycache__", "*.so", "*.pyd"))
@@ -44,7 +44,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def said_by(tree: Path, *arguments: str) -> tuple[int, str]:
-    """Run `tester` in the copy; return its exit code and all that it said."""
+    """Run `tester` in the copy; return its exit code and all its output."""
     environment = {
         **os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1",
         "TESTER_RUNTIME_DIR": str(tree / "runtime"),

@@ -17,7 +17,7 @@ from tests.tester.kinds.wheel_on_belt.bench import Simulation
 
 @pytest.fixture
 def devices() -> Devices:
-    """Drivers that have heard nothing yet."""
+    """Drivers that have received nothing yet."""
     ports, _, _ = simulated_ports(rig(), 0, None)
     return Devices(rig(), ports)
 

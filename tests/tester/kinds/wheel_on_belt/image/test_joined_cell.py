@@ -1,4 +1,4 @@
-"""A load cell of several transmitters, on the simulated rig: what the rig file needs, runs, and who is named."""
+"""A load cell of several transmitters, on the simulated rig: its rig file, runs, and the named transmitter."""
 
 from __future__ import annotations
 
@@ -57,14 +57,14 @@ def joined(parts: Sequence[tuple[str, str, str, int]], overrides: Sequence[str] 
 
 
 def problems(parts: Sequence[tuple[str, str, str, int]], overrides: Sequence[str] = ()) -> list[str]:
-    """Return what is wrong with a rig of these transmitters."""
+    """Return the problems of a rig with these transmitters."""
     with pytest.raises(InvalidSource) as caught:
         joined(parts, overrides)
     return [problem.message for problem in caught.value.problems]
 
 
 class Unattended:
-    """A computer that nothing happens to."""
+    """A computer without faults."""
 
     def stall(self, seconds: float) -> None: ...
 
@@ -137,7 +137,7 @@ def pressed() -> Simulation:
 
 
 def coefficient(run: Simulation) -> float:
-    """Return resultant friction over normal force, each summed over what counts."""
+    """Return resultant friction over normal force, each summed over the counted samples."""
     rows = run.rows(gate=0.0)
     return sum(hypot(row["force_x_n"], row["force_y_n"]) for row in rows) / sum(row["force_z_n"] for row in rows)
 

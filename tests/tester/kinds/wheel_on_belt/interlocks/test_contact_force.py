@@ -1,4 +1,4 @@
-"""The force that the press's movement lets expect: a step of either sign is told, whatever rubber and press do."""
+"""The force expected from the press's movement: a step of either sign is detected, whatever rubber and press do."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Rubber:
         )
 
     def scan(self, phase: float = 0.0, lost_n_s: float = 0.0) -> float:
-        """Let a scan pass; return how far the force is off."""
+        """Do a scan; return the error of the force."""
         self.now_s += DT_S
         missing = self.wanted_mm_s - self.speed_mm_s
         self.speed_mm_s += max(-RAMP_MM_S2 * DT_S, min(RAMP_MM_S2 * DT_S, missing))
@@ -68,7 +68,7 @@ class Rubber:
         return self.observer.off_n
 
     def told_after_s(self, within_s: float, phase: float = 0.0) -> float:
-        """Return how long the row needs from now on; infinity: it does not trip."""
+        """Return the time until the row trips; infinity: it does not."""
         began_s, since_s = self.now_s, math.inf
         while self.now_s < began_s + within_s:
             since_s = min(since_s, self.now_s + DT_S) if self.scan(phase) > FORCE_STEP_N.value else math.inf

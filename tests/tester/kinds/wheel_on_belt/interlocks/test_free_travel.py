@@ -1,4 +1,4 @@
-"""The press's torque in free travel, both ways, against what its lifting spring takes."""
+"""The press's torque in free travel, both ways, against its lifting spring's."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ class Travel:
         self.now_s, self.press_mm = 0.0, 5.0
 
     def go(self, way_mm: float, clear: bool = True) -> float:
-        """Move by this way; return how far the torque is off."""
+        """Move by this distance; return the error of the torque."""
         way = math.copysign(1.0, way_mm)
         for _ in range(round(abs(way_mm) / 0.1)):
             self.now_s += 0.05

@@ -1,4 +1,4 @@
-"""Heat that the temperatures do not show: beliefs off by 30 % never add up, sensors further off do."""
+"""Heat that the temperatures do not show: parameters off by 30 % never trip, larger sensor errors do."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def balance_of(rig: RigConfig, share: float) -> HeatBalance:
 
 @dataclass(frozen=True, slots=True)
 class Wheel:
-    """A wheel's heat capacities, losses and friction's heat as shares of those believed, in air off by some kelvin."""
+    """A wheel's heat capacities, losses and friction's heat as shares of those assumed, in air off by some kelvin."""
 
     capacity: float = 1.0
     losses: float = 1.0
@@ -147,7 +147,7 @@ def test_what_a_person_did_to_the_wheel_is_forgotten(rig: RigConfig) -> None:
 
 
 def lack(rig: RigConfig, drift_k_s: float, ratio: float = 1.0) -> float:
-    """Hold a reading at 110 degC for 20 min that falls behind the hub by ``drift_k_s``; return what is missing."""
+    """Hold a reading at 110 degC for 20 min that lags the hub by ``drift_k_s``; return the missing heat."""
     balance = balance_of(rig, 0.12)
     balance.ratio, balance.spread = ratio, 0.12
     lost_w = balance.shaft_w_k * (110.0 - balance.ambient_c)

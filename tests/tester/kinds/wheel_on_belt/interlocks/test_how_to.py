@@ -19,7 +19,7 @@ ROW = "rubber hotter than hub"
 
 @pytest.fixture(scope="module")
 def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """Return a copy of the tree in which the page has been followed; where somebody has already, there is none."""
+    """Return a copy of the tree with the page's changes; skip where the tree has them already."""
     if ROW in (ROOT / "tester/kinds/wheel_on_belt/interlocks/surface.py").read_text(encoding="utf-8"):
         pytest.skip("the page has been followed in this tree")
     tree = tmp_path_factory.mktemp("tree")
@@ -38,7 +38,7 @@ def tree(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def run(tree: Path, *arguments: str) -> str:
-    """Run Python in the copy; return what it printed."""
+    """Run Python in the copy; return its output."""
     environment = {**os.environ, "PYTHONPATH": str(tree), "PYTHONDONTWRITEBYTECODE": "1"}
     done = subprocess.run(
         [sys.executable, *arguments], cwd=tree, env=environment, capture_output=True, text=True, check=False

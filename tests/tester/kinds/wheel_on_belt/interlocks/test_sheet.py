@@ -1,4 +1,4 @@
-"""What is made from the rows is up to date, and says what the rows say."""
+"""Pages made from the rows are up to date and agree with the rows."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The interlock table: every row is complete, and declares what its condition compares with."""
+"""The interlock table: every row is complete, and declares the parameters of its condition."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ OURS = ("tester.kinds.wheel_on_belt.interlocks", "tester.machine.wires", "tester
 
 
 def compared(condition: Callable[[Inputs], object], known: set[FunctionType] | None = None) -> set[Parameter]:
-    """Return the parameters that a condition, and whatever function of ours it calls, names."""
+    """Return the parameters named by a condition and by our functions that it calls."""
     known = set() if known is None else known
     assert isinstance(condition, FunctionType)
     if condition in known:

@@ -1,4 +1,4 @@
-"""U from the last printed digit: that of known sums, and that of a fit without fitting again."""
+"""U from the last printed digit: of known sums, and of a fit without a second fit."""
 
 from __future__ import annotations
 

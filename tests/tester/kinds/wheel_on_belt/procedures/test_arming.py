@@ -1,4 +1,4 @@
-"""What must be shown before a run moves anything, and what happens where it is not."""
+"""Proofs required before a run moves anything, and the end of a run without them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A change of the belt: as safe as that of a wheel, believed only once it is answered, with each belt's own history."""
+"""A change of the belt: as safe as a wheel change, valid only once confirmed, with each belt's own history."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from tests.tester.kinds.wheel_on_belt.bench import Bench, make_bench
 
 @pytest.fixture
 def bench() -> Bench:
-    """A rig that rolls on belt A under load; a person answers when the test lets them."""
+    """A rig that rolls on belt A under load; the test decides when the person answers."""
     made = make_bench(automatic=False)
     made.ctx.belts = Belts("A", {"A": 120.0, "B": 40.0})
     made.ctx.put_on(wheel_of(made.ctx.rig.geometry, 1, 1, 1, "1#"))

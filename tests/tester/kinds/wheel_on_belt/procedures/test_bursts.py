@@ -1,4 +1,4 @@
-"""One repeat: how bursts begin, count and end, and what becomes of temperatures that do not hold."""
+"""One repeat: how bursts begin, count and end, and temperatures that do not hold."""
 
 from __future__ import annotations
 
@@ -168,7 +168,7 @@ def test_between_yawed_bursts_the_wheel_rolls_straight(bench: Bench) -> None:
     assert rolled and all(d.positions["sideslip"] == 0.0 for d in rolled)
 
 
-# -- what does not hold -------------------------------------------------------------------------------------------
+# -- unstable temperatures ----------------------------------------------------------------------------------------
 
 
 def test_what_warms_through_the_band_within_a_turn_cannot_be_held(bench: Bench) -> None:
@@ -264,7 +264,7 @@ def test_the_hot_rig_counts_nothing_warm_as_cold(warm_run: Simulation) -> None:
     rows, truth = counted(warm_run), dict(warm_run.truth)
     surface = [truth[row["time_s"]] for row in rows]
     # The band is 2 K; the thermometer lags by 0.15 s and is read five times a second, and the surface warms by 3 to 4
-    # K/s: what is read is old by 0.1 s in the mean, and up to 0.2 s with the few readings that a pulse has.
+    # K/s: a reading is 0.1 s old in the mean, and up to 0.2 s with the few readings that a pulse has.
     assert rows and max(surface) < 25.0 + 2.0 + 0.5
     assert fmean(surface) - fmean(row["surface_c"] for row in rows) < 1.2
 

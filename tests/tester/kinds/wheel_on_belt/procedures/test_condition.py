@@ -27,7 +27,7 @@ class Ticket:
 
 
 class Results(WheelResults):
-    """Takes repeats and conditions; commits at once, or when told."""
+    """Takes repeats and conditions; commits at once, or on command."""
 
     def __init__(self, *, committed: bool = True) -> None:
         super().__init__(NullRecorder())

@@ -1,4 +1,4 @@
-"""The live gates: each closes on its own quantity, opens when it is back, and unknown keeps it closed."""
+"""The live gates: each closes on its own quantity, opens when it returns, and stays closed while it is unknown."""
 
 from __future__ import annotations
 

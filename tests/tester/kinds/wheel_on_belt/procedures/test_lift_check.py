@@ -1,4 +1,4 @@
-"""The press is lifted and the load cell says so before anything else moves."""
+"""The press is lifted, and the load cell confirms it, before anything else moves."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ TOUCHING_MM = 11.8
 
 
 def wrongly_zeroed() -> Simulation:
-    """Return a rig whose press is at about 200 N where it says 0 mm: the wheel is in the way by 1.8 mm."""
+    """Return a rig whose press, at a reading of 0 mm, has about 200 N: the wheel is in the way by 1.8 mm."""
     simulation = Simulation(SHORT, (HOLDS, "sim.contact.gap=0 mm"))
     simulation.world.remount(1, 1, "1#", 93.6, 0.0)
     return simulation
@@ -39,7 +39,7 @@ def in_stage(stage: Stage) -> Callable[[Simulation], bool]:
 
 
 def others_moved(simulation: Simulation) -> bool:
-    """Tell whether a drive besides the press's has power, or turns."""
+    """Return whether a drive besides the press's has power, or turns."""
     return any(
         name != "press" and (axis.state is State.OPERATION_ENABLED or axis.axis.value != 0.0)
         for name, axis in simulation.world.axes.items()

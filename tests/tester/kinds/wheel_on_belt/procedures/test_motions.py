@@ -1,4 +1,4 @@
-"""The moves: each demands what it is for, and is done when the readings say so."""
+"""The moves: each demands its target, and is done when the readings show it."""
 
 from __future__ import annotations
 

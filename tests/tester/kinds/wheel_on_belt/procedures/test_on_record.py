@@ -21,7 +21,7 @@ from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, condition_of, m
 
 
 def soaked(surface_c: float, *, model_c: float = 40.0, hub_c: float = 52.0, valid: bool = True) -> SoakCheck | None:
-    """Return what is found on a rig whose sensors show this."""
+    """Return the finding on a rig with these readings."""
     bench: Bench = make_bench()
     ctx = bench.ctx
     ctx.observer.surface_c = model_c

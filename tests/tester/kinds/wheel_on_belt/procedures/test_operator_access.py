@@ -1,4 +1,4 @@
-"""A person at the rig: what has to be so before a question about the wheel is put, and before the run goes on."""
+"""A person at the rig: conditions before a question about the wheel, and before the run continues."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tests.tester.kinds.wheel_on_belt.bench import SHORT, Bench, Simulation, mak
 
 @pytest.fixture
 def bench() -> Bench:
-    """A rig that rolls under load, nobody answering for people."""
+    """A rig that rolls under load, without automatic answers."""
     made = make_bench(automatic=False)
     made.run(roll(0.8, 200.0))
     return made

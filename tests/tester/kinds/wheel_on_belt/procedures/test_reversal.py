@@ -1,4 +1,4 @@
-"""Both directions on a bench: which repeat slides which way, and what slides before it counts."""
+"""Both directions on a bench: the direction of each repeat, and sliding before it counts."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steps in their order, wheels changed where the plan did not foresee it, the end."""
+"""Steps in their order, unplanned wheel changes, the end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Steps that wait for a temperature: what they hold meanwhile, when they are done, and that none waits for ever."""
+"""Steps that wait for a temperature: what they hold meanwhile, when they are done, and their time limits."""
 
 from __future__ import annotations
 
@@ -244,7 +244,7 @@ def test_after_heating_up_the_heat_balance_is_on_record_as_numbers() -> None:
 
 
 def heats(bench: Bench, hub_c: float, put_j: float, shown_j: float, *, forget: bool = False) -> list[str]:
-    """Heat up from a surface and hub of 24 degC to a hub of ``hub_c``; return what is said of it."""
+    """Heat up from a surface and hub of 24 degC to a hub of ``hub_c``; return the message about it."""
     bench.ctx.heat = heat = HeatBalance(420.0, 0.15, 200.0, 23.0, 0.3, 5.0, put_j=7e3, shown_j=6e3)
     step = heat_up()
     bench.hold(step, 30.0, dt=0.05)

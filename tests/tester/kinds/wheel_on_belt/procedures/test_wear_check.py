@@ -1,4 +1,4 @@
-"""Checks of the wheel's diameter: by rolling, by a person, and when they are made."""
+"""Checks of the wheel's diameter: by rolling, by a person, and their times."""
 
 from __future__ import annotations
 
@@ -211,7 +211,7 @@ def test_the_question_is_put_at_rest() -> None:
 
 
 def between(plan: Plan, results: Results | None = None, worn_mm: float = 0.0) -> tuple[list[tuple[object, ...]], Bench]:
-    """Return between which conditions each check was made, on which wheel."""
+    """Return the wheel of each check, and the conditions before and after it."""
     _, bench = walk(plan, results or Results(), worn_mm=worn_mm)
     return [(one["wheel"], one["after"], one["before"]) for one in checks(bench)], bench
 

@@ -1,4 +1,4 @@
-"""The zero of the load cell is checked after long contact, wherever a recipe stays in it."""
+"""The zero of the load cell is checked after long contact, wherever a recipe has it."""
 
 from __future__ import annotations
 
@@ -50,7 +50,7 @@ def test_it_is_due_where_the_press_is_deeper_than_the_load_needs_by_half_of_what
     assert not is_due(ctx)
     ctx.view.contact_mm -= 0.02 * allowed_mm
     assert is_due(ctx)
-    ctx.gates.touched_s = ctx.now - 10.0  # touched just now: soft rubber
+    ctx.gates.touched_s = ctx.now - 10.0  # just touched: soft rubber
     assert not is_due(ctx)
 
 

@@ -1,4 +1,4 @@
-"""Measured diameters and hardnesses in a recipe, held against the rig's wheel and the compound's file."""
+"""Measured diameters and hardnesses in a recipe, compared with the rig's wheel and the compound's file."""
 
 from __future__ import annotations
 

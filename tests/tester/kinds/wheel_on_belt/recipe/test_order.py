@@ -1,4 +1,4 @@
-"""What the order of the steps costs, and the range of the rig time."""
+"""The cost of the steps' order, and the range of the rig time."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_heating_itself_does_not_hold_that_wait() -> None:
 
 
 def test_a_small_step_up_does_not_overshoot_as_heating_from_ambient_does() -> None:
-    # 15 K on top of 55 degC: the surface stands at once; from ambient it takes minutes more.
+    # 15 K on top of 55 degC: the surface is steady at once; from ambient it takes minutes more.
     steps = conditions(at("[55 degC, 70 degC]", "100 N", "100 mm/s"))
     alone = conditions(at("70 degC", "100 N", "100 mm/s"))
     assert steps[1] < alone[0] - 100.0

@@ -1,4 +1,4 @@
-"""Both directions in a recipe: what is refused, by which limit, what a plan says of it, and what it costs."""
+"""Both directions in a recipe: refusals and their limits, the text of a plan, and the cost."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A reference condition in recipes and plans: where it comes round, on which wheel, what is refused."""
+"""A reference condition in recipes and plans: its places, its wheel, refusals."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is left of a plan: where it goes on, with which wheel, after which conditioning."""
+"""The rest of a plan: where it resumes, with which wheel, after which conditioning."""
 
 from __future__ import annotations
 

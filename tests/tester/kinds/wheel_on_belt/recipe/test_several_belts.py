@@ -1,4 +1,4 @@
-"""Several belts in one recipe: where they are changed, what follows, and what is left of it after an interruption."""
+"""Several belts in one recipe: the changes, their consequences, and the remaining plan after an interruption."""
 
 from __future__ import annotations
 

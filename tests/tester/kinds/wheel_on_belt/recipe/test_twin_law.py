@@ -1,4 +1,4 @@
-"""Compounds of a recipe on the simulated wheel: the law of a file, an assumed one, and what has none."""
+"""Compounds of a recipe on the simulated wheel: the law of a file, an assumed one, and compounds without one."""
 
 from __future__ import annotations
 

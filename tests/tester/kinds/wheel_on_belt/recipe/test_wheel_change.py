@@ -1,4 +1,4 @@
-"""The steps of a wheel change, as the executor asks for them during a run."""
+"""The steps of a wheel change, as the executor requests them during a run."""
 
 from __future__ import annotations
 

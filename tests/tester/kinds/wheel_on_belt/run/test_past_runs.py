@@ -1,4 +1,4 @@
-"""Heatings of earlier runs as evidence: of the same rig with the same beliefs, from runs that can be believed."""
+"""Heatings of earlier runs as evidence: of the same rig with the same parameters, from valid runs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plan in parts: whose steps go where, and that nothing is lost or renumbered."""
+"""A plan in parts: the part of each step; nothing is lost or renumbered."""
 
 from __future__ import annotations
 

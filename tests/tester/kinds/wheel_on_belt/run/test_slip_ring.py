@@ -1,4 +1,4 @@
-"""The slip ring on the simulated rig: a worn place is found from the record of a run, and told by a command."""
+"""The slip ring on the simulated rig: a worn place is found in the record of a run, and reported by a command."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ NOTED = 40
 
 
 def turning(simulation: Simulation) -> bool:
-    """Tell whether the wheel turns as fast as it is to."""
+    """Return whether the wheel turns at its setpoint."""
     return simulation.ctx.readings.wheel_speed_m_s > 0.79
 
 

@@ -1,4 +1,4 @@
-"""What past runs say of the machine: wheel, zero, heat; and which wheel manual mode takes to be on it."""
+"""The machine's state from past runs: wheel, zero, heat; and the wheel that manual mode assumes."""
 
 from __future__ import annotations
 
