@@ -1,4 +1,4 @@
-"""Rows that are evaluated only after a change of what they read, beside their evaluation in every scan."""
+"""Rows evaluated only after a change of their inputs, compared with their evaluation in every scan."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ def places(parts: Sequence[Any]) -> list[tuple[Any, str, object]]:
 
 
 def other(value: object, numbers: random.Random) -> object:
-    """Return another value of the same type, as a rig may bring it."""
+    """Return another value of the same type, as a rig may report it."""
     if isinstance(value, bool):
         return not value
     if isinstance(value, str):
@@ -42,7 +42,7 @@ def expect_every_scan(
     """Change whatever the inputs hold, a value a scan: each row holds in every scan in which its condition does,
     and both ways of comparing rows agree.
 
-    ``parts``: the objects of the inputs; ``also``: changes what is no field of theirs.
+    ``parts``: the objects of the inputs; ``also``: changes everything else.
     """
     rows = [row for row in table.rows if row.when is SELDOM]
     each = [([row], Loops([row], view.parameters).any_holds, written([row], view.parameters)) for row in table.rows]

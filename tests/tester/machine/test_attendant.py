@@ -1,4 +1,4 @@
-"""The attendant of a real rig does nothing, whatever it is asked."""
+"""The attendant of a real rig does nothing on any request."""
 
 from __future__ import annotations
 

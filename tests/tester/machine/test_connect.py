@@ -1,4 +1,4 @@
-"""Bringing a rig up: in its order, and with a reason where it does not come up."""
+"""Bringing a rig up: in order, and with a reason for every failure."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def simulation() -> Simulation:
 
 
 def connect(simulation: Simulation, at_most_s: float = TIMEOUT_S + 1.0) -> Connector:
-    """Tick the connection to its end."""
+    """Tick the connection until it ends."""
     connector = simulation.run.connector
     while not connector.finished:
         assert simulation.now < at_most_s
@@ -137,7 +137,7 @@ def test_a_drive_that_obeys_nothing_loses_its_power_when_the_connection_is_given
     world.relay = None  # it would take the torque off a belt that turns beside a wheel at rest
     gone_s, stops = simulation.now + 5.0, False
     while simulation.now < gone_s and not simulation.run.finished:
-        stops = stops or drive.state is State.QUICK_STOP_ACTIVE  # by itself, without our heartbeat: it never gets slow
+        stops = stops or drive.state is State.QUICK_STOP_ACTIVE  # by itself, without our heartbeat: it never slows down
         if stops and drive.energised:
             drive.axis.aim(0.3)
         world.advance(simulation.now)

@@ -1,4 +1,4 @@
-"""The scan: its rate follows the state, it decides before it sends, and what it holds can be copied."""
+"""The scan: its rate follows the state, it decides before it sends, and its state can be copied."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ OVERCURRENT = 0x2310
 
 
 class Frames:
-    """A watcher that keeps what the computer sent."""
+    """A watcher that keeps the computer's frames."""
 
     def __init__(self) -> None:
         self.sent: list[tuple[int, bytes]] = []
@@ -97,7 +97,7 @@ def test_a_trip_sends_safe_outputs_in_its_scan(running: Simulation) -> None:
     assert (out.heat, out.contactor, out.wheel_rad_s, out.belt_m_s) == (False, False, 0.0, 0.0)
     assert out.press_mm_s == -running.ctx.rig.axes.press.max_speed and out.quick_stop, "as fast as the press goes"
     words = {can_id: int.from_bytes(data[:2], "little") for can_id, data in frames.sent if 0x201 <= can_id <= 0x203}
-    # Controlword bit 2 clear: quick stop (CiA 402); the press goes on retracting.
+    # Controlword bit 2 clear: quick stop (CiA 402); the press continues to retract.
     assert not words[0x201] & 4 and words[0x203] & 4
 
 

@@ -1,4 +1,4 @@
-"""The walk through a plan, whatever serves its steps."""
+"""The sequence of a plan, with any activities."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ class Scans:
 
 
 class LampProcedures(Procedures[LampContext]):
-    """Serves prompts; says what is put before and after them."""
+    """Serves prompts; returns the steps inserted before and after them."""
 
     def __init__(self) -> None:
         self.began: list[str] = []

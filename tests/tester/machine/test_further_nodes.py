@@ -1,4 +1,4 @@
-"""A CANopen node that measures, listed in the rig file: connected, heard, recorded under the master of the drives."""
+"""A measuring CANopen node in the rig file: connected, received, recorded under the master of the drives."""
 
 from __future__ import annotations
 

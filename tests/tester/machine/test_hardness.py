@@ -22,7 +22,7 @@ OWN = HardnessBelief({"own": BelievedHardness(64.0, 2.0)}, lambda piece, shore_a
 
 
 def installed(answer: str, step: Install = INSTALL, belief: HardnessBelief = OWN, by: str = "") -> Bench:
-    """Mount a wheel; its question gets this answer from this person, or answers itself."""
+    """Mount a wheel; its question gets this answer from this person, or an automatic one."""
     bench = make_bench(automatic=not answer)
     bench.ctx.hardness = belief
     work = InstallWheel(step, [])

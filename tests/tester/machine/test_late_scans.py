@@ -1,4 +1,4 @@
-"""What drives' data may be old after a late scan (decision 33): they answer each scan's SYNC, not the clock."""
+"""Permitted age of drives' data after a late scan (decision 33): they answer each scan's SYNC, not the clock."""
 
 from __future__ import annotations
 

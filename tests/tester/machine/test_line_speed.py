@@ -1,4 +1,4 @@
-"""A line too slow for the ages that the rig file allows is refused at connect, with what to do about it."""
+"""A line too slow for the ages that the rig file allows is refused at connect, with a remedy."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from tests.tester.doctor.fake_computer import FakeComputer
 
 
 def connected(held: str) -> tuple[Connector, DeviceList]:
-    """Connect to the simulated rig until its devices are heard, or it is given up."""
+    """Connect to the simulated rig until its devices answer, or the connection fails."""
     rig = load_rig("sim", (f"sim.latency_timer={held}",))
     ports, world, _ = simulated_ports(rig, 0, None)
     devices = Devices(rig, ports)

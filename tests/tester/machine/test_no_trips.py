@@ -25,7 +25,7 @@ OFF = (
     ("sim.friction_heat_fraction=0.078", "sim.belt_conductance=0.042", "sim.thermal.hub_capacity=546"),
     ("sim.friction_heat_fraction=0.042", "sim.belt_conductance=0.078", "sim.thermal.hub_capacity=294"),
 )
-"""The plant as the observer believes, and off by 30 % either way."""
+"""The plant as the observer assumes, and off by 30 % either way."""
 
 
 def recipe(compound: str) -> str:

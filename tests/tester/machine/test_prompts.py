@@ -1,4 +1,4 @@
-"""Who answers a question: with --yes nobody is asked, unless a person has to come near a real machine."""
+"""Answers to questions: --yes answers all, except where a person must approach a real machine."""
 
 from __future__ import annotations
 

@@ -21,7 +21,7 @@ STEP = replace(condition_of(), repeats=3, at_most=6, min_valid=2)
 
 
 class Door:
-    """Results on a bench, and what they wrote."""
+    """Results on a bench, and their rows."""
 
     def __init__(self) -> None:
         self.bench: Bench = make_bench()
@@ -38,7 +38,7 @@ class Door:
         drift: float = 0.0,
         step: ConditionStep = STEP,
     ) -> RepeatStatus:
-        """Go through one repeat with so many turns of one coefficient, or of one that drifts, a share a window."""
+        """Do one repeat with so many turns of one coefficient, constant or drifting, as a share per window."""
         ctx = self.bench.ctx
         key = self.results.begin_repeat(ctx, step, number, 1)
         measured = MeasureRepeat(step, [], 1.0)
@@ -49,7 +49,7 @@ class Door:
         return outcome.status
 
     def end(self, end: ConditionEnd | None = None) -> tuple[str, tuple[object, ...]]:
-        """Close the condition; return the line and what was written."""
+        """Close the condition; return the line and the written rows."""
         line = self.results.finish_condition(self.bench.ctx, STEP, end or ConditionEnd())
         written = self.bench.notes.written("UPDATE condition SET status")
         return line, written[-1]

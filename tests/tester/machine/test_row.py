@@ -1,4 +1,4 @@
-"""What a row watches: its condition, what a trip records and its sentence come from one value and one limit."""
+"""A row: its condition, its trip's record and its sentence use one value and one limit."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ DELAY = Parameter("wait_s", "s", "1 s", "for this long")
 
 @dataclass
 class Pull:
-    """What the rows look at."""
+    """Inputs of the rows."""
 
     force_n: float = 0.0
     wanted: bool = True

@@ -1,4 +1,4 @@
-"""A run from outside: how it ends, and what a stop makes of it."""
+"""A run from outside: its end, and the effect of a stop."""
 
 from __future__ import annotations
 

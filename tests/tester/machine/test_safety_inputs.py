@@ -34,7 +34,7 @@ INPUTS: Final = {
 }
 FAST = {Mode.FAST_STOP, Mode.LATCHED}
 CONTROLLED = {Mode.STOPPING, Mode.COOLDOWN, Mode.LATCHED}
-"""Modes after the scan of a trip: a rig that stands has stopped at once."""
+"""Modes after the scan of a trip: a rig at rest has stopped at once."""
 WORKING = (Mode.RUN, Mode.HOLD)
 RESTING = (Mode.IDLE, Mode.ARMED, Mode.LATCHED)
 CASES = list(product(INPUTS, (0.0, nan, 2.0)))
@@ -89,7 +89,7 @@ def test_an_input_that_is_not_closed_trips_in_every_mode_but_at_rest_by_its_name
         held = control.table.names_of(control.state.held)
         assert title(name) in held, (name, value)
         if mode in RESTING:
-            continue  # nothing is left to stop: it only keeps the rig from being armed
+            continue  # nothing to stop: it only prevents arming
         assert control.state.trip is not None and title(name) in {
             control.state.trip.name, *control.table.names_of(control.state.tripped)
         }  # fmt: skip
@@ -157,11 +157,11 @@ TRIPPED: Final = {
     "inputs shows air_closed": "air",
     "inputs without supply": "limiter",
 }
-"""Faults of the catalogue, and the input that is named first."""
+"""Faults of the catalogue, and the first input named."""
 
 
 class Unattended:
-    """A computer that nothing happens to."""
+    """A computer without faults."""
 
     def stall(self, seconds: float) -> None: ...
 

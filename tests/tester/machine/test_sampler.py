@@ -1,4 +1,4 @@
-"""Which scans are recorded, and what a row holds."""
+"""Recorded scans, and the contents of a row."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is silent, in words."""
+"""Silent devices, in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far a run is and how long it still takes, with the clock and the steps played."""
+"""Progress and remaining time of a run, with a played clock and played steps."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ WORKING, WAITING, GIVEN_UP = Doing.WORKING, Doing.WAITING, Doing.GIVEN_UP
 
 
 class Played:
-    """A plan whose every step is estimated at 100 s, and a run that is where the test says."""
+    """A plan with every step estimated at 100 s, and a run at the step that the test sets."""
 
     def __init__(self, earlier: Earlier | None = None) -> None:
         rig = load_rig("sim")
@@ -36,7 +36,7 @@ class Played:
         return next(place for place, step in enumerate(self.plan.steps) if step.kind == "condition")
 
     def at(self, now: float, place: int, state: Doing = WORKING, *, measuring: bool = False) -> float | None:
-        """Be at a step, by its index in the plan, at a rig time; return the time left."""
+        """Go to a step, by its index in the plan, at a rig time; return the time left."""
         self.progress.step = place + 1
         self.left.update(now, self.progress, self.plan.steps[place + 1 :], state, measuring=measuring)
         return self.left.standing().left_s

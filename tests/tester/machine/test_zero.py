@@ -1,4 +1,4 @@
-"""The zero of a load cell: which readings it averages, and when it is given up."""
+"""The zero of a load cell: the averaged readings, and the time-out."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ STEP_S = 0.05
 
 
 def averaged(zero: ZeroOfCell, seconds: float, *, valid: bool = True, new: bool = True) -> tuple[bool, float]:
-    """Step it until it is averaged, or for so long; return whether it is, and when."""
+    """Step it until it is averaged or time is up; return whether it is, and when."""
     ctx: Any = SimpleNamespace(now=100.0, moving=False)
     at_s = ctx.now
     while ctx.now - 100.0 <= seconds:

@@ -28,28 +28,28 @@ HOT_DELAY_S: Final = Parameter("hot_delay_s", "s", "100 ms", "... for this long"
 
 @dataclass(slots=True)
 class LampReadings(BaseReadings):
-    """What is known of the lamp."""
+    """Readings of the lamp."""
 
     lamp_c: float = 20.0
 
 
 @dataclass(slots=True)
 class LampDemand(BaseDemand):
-    """What is wanted of it, 0..1."""
+    """Requested brightness, 0..1."""
 
     light: float = 0.0
 
 
 @dataclass(slots=True)
 class LampSetpoints(BaseSetpoints):
-    """What it is told, 0..1."""
+    """Commanded brightness, 0..1."""
 
     light: float = 0.0
 
 
 @dataclass(slots=True)
 class LampInputs(ScanInputs):
-    """What its rows look at."""
+    """Inputs of its rows."""
 
     readings: LampReadings = field(default_factory=LampReadings)
 
@@ -132,7 +132,7 @@ class LampControl(Control[ControlState[LampSetpoints], LampReadings, LampDemand,
 
 
 class LampContext(BaseContext[Rig, LampReadings, LampDemand]):
-    """What a step of a lamp may see and do."""
+    """Context of a lamp's step."""
 
 
 def make_context() -> LampContext:

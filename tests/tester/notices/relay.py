@@ -45,13 +45,13 @@ class MailRelay:
     down: bool = False
     """Every connection ends before the greeting."""
     loses: int = 0
-    """Number of mails that it will take without an answer."""
+    """Number of mails that it takes without an answer."""
     drops: int = 0
     """Number of mails whose connection ends before it has taken them."""
     refuses: dict[str, int] = field(default_factory=dict[str, int])
     """Reply code by recipient."""
     hangs: Event | None = None
-    """Its greeting waits for this."""
+    """Delay of its greeting."""
     taken: list[TakenMail] = field(default_factory=list[TakenMail])
     connections: int = 0
     port: int = 0

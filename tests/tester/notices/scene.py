@@ -1,4 +1,4 @@
-"""An outbox in virtual time, with a real relay or a channel that a test plays."""
+"""An outbox in virtual time, with a real relay or a channel played by a test."""
 
 from __future__ import annotations
 
@@ -55,7 +55,7 @@ class PlayedChannel:
 
 
 class OutboxScene:
-    """One outbox; ``pass_time`` lets seconds pass, in which everything due is done."""
+    """One outbox; ``pass_time`` advances the clock and does everything due."""
 
     def __init__(
         self, folder: Path, settings: NoticeSettings, *, channel: NoticeChannel | None = None,
@@ -74,7 +74,7 @@ class OutboxScene:
         self.work()
 
     def work(self) -> None:
-        """Try whatever is due now."""
+        """Try everything due now."""
         for channel in tuple(self.dispatch.channels):
             while self.dispatch.attempt(channel, self.now_s):
                 pass

@@ -1,4 +1,4 @@
-"""Each channel against the other end for real, over loopback."""
+"""Each channel against a real server, over loopback."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_no_relay_there_is_told_in_words() -> None:
 
 
 class WebServer(ThreadingHTTPServer):
-    """Keeps what was posted, and answers with ``code``."""
+    """Keeps posts, and answers with ``code``."""
 
     code = 200
     posted: list[tuple[str, dict[str, str], bytes]]

@@ -1,4 +1,4 @@
-"""When a notice goes: once a key and 10 minutes, in order, again where a question waits, and every morning."""
+"""Times of notices: once per key in 10 minutes, in order, again while a question waits, and every morning."""
 
 from __future__ import annotations
 

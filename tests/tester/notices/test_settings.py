@@ -1,4 +1,4 @@
-"""`notices.yaml` and the file with secrets: what is accepted, and where a mistake is."""
+"""`notices.yaml` and the file with secrets: accepted settings, and the place of each mistake."""
 
 from __future__ import annotations
 

@@ -108,7 +108,7 @@ class PageStage:
         await self._stack.aclose()
 
     async def desk(self, request: ShowDesk | NewCode | Revoke | None = None) -> DeskView:
-        """What the machine's screen asks."""
+        """The question of the machine's screen."""
         return await asyncio.to_thread(call_desk, self.fake.address, request or ShowDesk())
 
     async def browser(self, **options: Any) -> Browser:

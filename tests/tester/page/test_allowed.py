@@ -1,4 +1,4 @@
-"""Every command of the protocol, in every role: what a page may send is a list, and all else is refused."""
+"""Every command of the protocol, in every role: a page may send the listed ones, all others are refused."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def made(command: type[Any]) -> Any:
 
 
 NEVER = {"arm", "attend", "jog", "tare", "answer", "frames"}
-"""What belongs to the terminal in every role."""
+"""Commands that only the terminal may send."""
 BY_ROLE = {
     "look": {"check", "plan", "recipes", "runs"},
     "stop": {"stop"},

@@ -1,4 +1,4 @@
-"""`tester page --lan` with a certificate of a real authority: who trusts it works as at the machine, no other does."""
+"""`tester page --lan` with a certificate of a real authority: only a client that trusts it works as at the machine."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ needs_second = pytest.mark.skipif(not has_second_address(), reason=f"this system
 
 
 class Authority:
-    """An authority that a test makes, and a certificate of it on disk for an address."""
+    """A test's authority, and its certificate for an address on disk."""
 
     def __init__(self, folder: Path, address: str = LAN) -> None:
         self.ca = trustme.CA()
@@ -165,7 +165,7 @@ def test_without_a_certificate_a_page_on_the_network_looks_and_stops_and_no_more
         async with asyncio.timeout(120.0), PageStage(tmp_path, lan=LAN) as stage:
             before = (await stage.desk()).code
             refused = (await stage.desk(NewCode("control"))).code
-            assert before is not None and refused == before  # no code for it is made
+            assert before is not None and refused == before  # no code is made for it
             page = await opened(stage, None)
             assert (await paired(stage, page, "stop"))["role"] == "stop"
             await page.service("hello")

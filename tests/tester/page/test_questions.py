@@ -1,4 +1,4 @@
-"""Questions over a page's socket: answered by processes of their own, written to only with the role control."""
+"""Questions over a page's socket: answered by separate processes; only the role control may write."""
 
 from __future__ import annotations
 
@@ -93,7 +93,7 @@ def test_a_run_that_ends_is_prepared_for_its_first_picture(
         assert run is not None
         stage.fake.show(replace(state(), run=replace(run, name="first", folder="runs/first", exit=None)))
         assert (await page.service("snapshot"))["state"]["run"]["name"] == "first"
-        asked.clear()  # of the run that was under way before, where its state had arrived
+        asked.clear()  # of the previous run, where its state had arrived
         stage.fake.show(replace(state(), run=replace(run, name="first", folder="runs/first", exit=0)))
         await page.service("snapshot")
         assert asked == ["first"]

@@ -36,7 +36,7 @@ def play(folder: Path, story: Story, **options: Any) -> None:
     asyncio.run(run())
 
 
-# -- what a page gets ----------------------------------------------------------------------------------------
+# -- sent to a page ------------------------------------------------------------------------------------------
 
 
 def test_a_paired_page_gets_state_plan_and_events(tmp_path: Path) -> None:
@@ -141,7 +141,7 @@ def test_a_note_or_exclusion_on_the_run_under_way_goes_to_the_service_with_the_p
         assert answer["type"] == "accepted" and answer["result"] == stage.fake.results.get(query)
         order = stage.fake.orders[-1]
         assert order.action == action and order.name == "page 1: Anna's phone"
-        assert stage.fake.presence is None or not stage.fake.presence.controller  # it asks for no control
+        assert stage.fake.presence is None or not stage.fake.presence.controller  # it does not ask for control
         stage.fake.orders.clear()
         looks = await stage.paired("look")
         await looks.service("hello")
@@ -218,7 +218,7 @@ def test_stop_goes_to_its_own_door_in_a_message_of_any_form(tmp_path: Path) -> N
     play(tmp_path, story)
 
 
-# -- who gets in ---------------------------------------------------------------------------------------------
+# -- admission -----------------------------------------------------------------------------------------------
 
 
 def test_a_thousand_wrong_codes_open_nothing_and_leave_paired_pages_their_stop(

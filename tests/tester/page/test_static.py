@@ -1,4 +1,4 @@
-"""The page's files: what they may weigh and hold, and their colours, by computation."""
+"""The page's files: limits of size and content, and computed contrasts of colours."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ FORBIDDEN = re.compile(
     r"innerHTML|outerHTML|insertAdjacentHTML|document\.write|\beval\b|new Function|DOMParser|createContextualFragment|"
     r"srcdoc|document\.cookie|\.cssText|setAttribute\(\s*['\"]style"
 )
-"""What makes markup or code of a text, or hides a secret in a cookie."""
+"""Calls that turn a text into markup or code, or hide a secret in a cookie."""
 ELSEWHERE = re.compile(r"(?:https?:|wss?:|['\"(])//(?!www\.w3\.org/2000/svg)[\w.]")
 
 

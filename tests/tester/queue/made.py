@@ -43,7 +43,7 @@ def queue_of(*events: QueueEvent, start: Queue | None = None) -> Queue:
 
 
 def evidence_for(queue: Queue, *, lacks: str = "", fails: str = "", age_s: float = 1.0) -> Evidence:
-    """Return evidence with which the next item may begin, except for one check that is missing or fails."""
+    """Return evidence that lets the next item begin, except for one missing or failed check."""
     first = queue.next
     checks: Iterable[Check] = (Check(name, name != fails, "as it must be") for name in NEEDED if name != lacks)
     return Evidence(first.item.id if first is not None else 0, queue.revision, tuple(checks), age_s)

@@ -1,4 +1,4 @@
-"""A look at an item: what it finds, and what changed since, in words."""
+"""The check of an item: its findings and later changes, in words."""
 
 from __future__ import annotations
 

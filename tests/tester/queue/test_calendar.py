@@ -1,4 +1,4 @@
-"""The calendar: what it shows, hostile names, and its keys."""
+"""The calendar: its entries, hostile names, and its keys."""
 
 from __future__ import annotations
 

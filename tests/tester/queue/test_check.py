@@ -1,4 +1,4 @@
-"""The check of a night: until when the queue runs alone, who is needed when, and a better order."""
+"""The check of a night: how long the queue runs alone, who is needed when, and a better order."""
 
 from __future__ import annotations
 

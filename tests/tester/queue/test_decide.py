@@ -1,4 +1,4 @@
-"""What happens next: nothing begins without all the evidence, and every wait has a reason."""
+"""The next decision: nothing begins without all the evidence, and every wait has a reason."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The fold: what follows each end, what is refused, and that no item is twice or lost, over all short histories."""
+"""The fold: the state after each end, refusals, and no duplicate or lost item, over all short histories."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ from tests.tester.queue.made import UTC, item, queue_of
 TWO = (ItemAdded(item(1)), ItemAdded(item(2)))
 RUNS = (*TWO, QueueStarted("anna"), ItemTaken(1), ItemBegan(1, "run-1"))
 DEPTH = 6
-"""Length of the histories that are tried, after two items are added."""
+"""Length of the histories after two items are added."""
 
 
 def numbers(queue: Queue) -> list[int]:

@@ -1,4 +1,4 @@
-"""The queue's record: cut at any byte, damaged, written by a disk that fails."""
+"""The queue's record: cut at any byte, damaged, written to a failing disk."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Charts to draw: made up once, so that their pictures can be compared."""
+"""Made-up charts whose pictures can be compared."""
 
 from __future__ import annotations
 

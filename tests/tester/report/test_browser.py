@@ -1,4 +1,4 @@
-"""A report in a browser, where a Chromium is found: on a screen, a phone and paper. Its pictures are to be looked at.
+"""A report in a browser, where a Chromium is found: on a screen, a phone and paper. Look at its pictures.
 
 ``python -m pytest -n 0 -m campaign tests/tester/report/test_browser.py``. TESTER_CHROMIUM names a browser,
 TESTER_ARTEFACTS the folder that keeps the pictures, TESTER_REPORT a report to look at in place of a made-up one.

@@ -21,7 +21,7 @@ compare_images = pytest.importorskip("matplotlib.testing.compare").compare_image
 STORED = Path(__file__).parent / "pictures"
 DPI = 60.0
 TOLERANCE = 6.0
-"""Root mean square difference of the pixels, of 255: fonts are drawn a little otherwise from version to version."""
+"""Root mean square difference of the pixels, of 255: fonts differ a little from version to version."""
 
 
 def lightness(colour: str) -> float:

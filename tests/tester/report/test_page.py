@@ -68,7 +68,7 @@ def text(plain: RunRecord) -> str:
 
 @pytest.fixture(scope="module")
 def hostile(tmp_path_factory: pytest.TempPathFactory) -> str:
-    """A report of a run whose every text is made by somebody who means harm."""
+    """A report of a run with hostile text in every field."""
     folder = tmp_path_factory.mktemp("hostile") / "two"
     folder.mkdir()
     every = " ".join(HOSTILE)
@@ -177,7 +177,7 @@ def test_hostile_names_are_text_and_steer_nothing(hostile: str) -> None:
     assert not FORBIDDEN.search(hostile)
     assert "<script" not in hostile and "onload=alert(1)>" not in hostile.replace("&gt;", "")
     assert "&lt;script&gt;alert(1)&lt;/script&gt;" in hostile
-    assert "{{ 7 * 7 }}" in hostile  # as it was written: no template of ours
+    assert "{{ 7 * 7 }}" in hostile  # verbatim: not a template of ours
     assert all(len(one.text or "") <= LONGEST_TEXT + 40 for one in elements(hostile) if one.tag != f"{HTML}style")
 
 

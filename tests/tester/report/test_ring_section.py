@@ -1,4 +1,4 @@
-"""The ring in a report: errors by angle and speed, trend over runs of one rig; nothing where there is none."""
+"""The ring in a report: errors by angle and speed, trend over runs of one rig; no section without a ring."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from tester.store.run_reader import RunReader
 
 
 def made(kind: str, reader: RunReader, decimals: int = 2) -> bytes:
-    """Return what a format makes of a record."""
+    """Return a record in a format."""
     file = BytesIO()
     FORMATS[kind].write(Record(reader, decimals), file)
     return file.getvalue()

@@ -1,4 +1,4 @@
-"""The budget as a table, read off a record."""
+"""The budget as a table, from a record."""
 
 from __future__ import annotations
 
@@ -160,7 +160,7 @@ def worn_between(folder: Path, checks: tuple[WearCheck, ...] = ()) -> list[tuple
 
 def test_a_condition_has_the_loss_of_its_own_time(tmp_path: Path) -> None:
     (first, _), (second, _) = worn_between(tmp_path)
-    assert (first, second) == pytest.approx((0.5, 1.375))  # in the middle of what it slid
+    assert (first, second) == pytest.approx((0.5, 1.375))  # in the middle of its sliding
 
 
 def test_checks_around_a_condition_are_its_own(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""Which conditions of a run are held against each other, dry and with a film."""
+"""The pairs of conditions of a run that are compared, dry and with a film."""
 
 from __future__ import annotations
 
@@ -56,7 +56,7 @@ def test_another_specimen_or_replicate_is_no_partner(results: RunResults) -> Non
 
 
 def points(results: RunResults, pair: FilmPair) -> list[tuple[float, float]]:
-    """Return temperature and coefficient of what differs from a condition with a film in temperature alone."""
+    """Return temperature and coefficient of conditions that differ from one with a film in temperature alone."""
     at = pair.film.info.setpoint
     measured = [one for row in results.rows for one in row.replicates]
     alike = [one for one in measured if one.info.setpoint.but(temperature=0.0) == at.but(temperature=0.0)]

@@ -1,4 +1,4 @@
-"""A person's word on a repeat: on record for good, honoured by every table, and accounted for by `tester verify`."""
+"""A repeat excluded by a person: on record for good, honoured by every table, reported by `tester verify`."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def run(tmp_path: Path) -> Path:
 
 
 def problems(folder: Path) -> tuple[str, ...]:
-    """Return what a verification reports besides that these small runs have no samples."""
+    """Return the findings of a verification, apart from the missing samples of these small runs."""
     return tuple(line for line in verify(folder).problems if "no samples" not in line)
 
 

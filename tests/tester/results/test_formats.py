@@ -1,4 +1,4 @@
-"""A format stands once: commands, screens, a run's folder and verification read the table. Others bring their own."""
+"""A format is defined once: commands, screens, run folders and verification read the table. Packages add their own."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The hardness of a simulated run, from the recipe to what `tester show` and the report print."""
+"""The hardness of a simulated run, from the recipe to `tester show` and the report."""
 
 from __future__ import annotations
 

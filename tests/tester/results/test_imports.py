@@ -1,4 +1,4 @@
-"""What is imported in a run stays light."""
+"""Imports of a run stay light."""
 
 from __future__ import annotations
 

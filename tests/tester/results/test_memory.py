@@ -32,7 +32,7 @@ def recorded(folder: Path, rows: int) -> Path:
 
 
 def peak_mb(folder: Path, kind: str) -> float:
-    """Return the most memory that Python took while a run's samples were exported."""
+    """Return Python's peak memory during an export of a run's samples."""
     with RunReader(folder) as reader:
         tracemalloc.start()
         try:

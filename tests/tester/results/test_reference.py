@@ -1,4 +1,4 @@
-"""Reference conditions leave in a table of their own, with a mark, a chart, a sentence and a term."""
+"""Reference conditions are exported in their own table, with a mark, a chart, a sentence and a term."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What users read back from the exports is what was meant, any text in any field; or it was refused with its place."""
+"""Exports read back as the original text, for any text in any field, or the text was refused with its place."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ SEEDS = (
     "\u2028", "",
 )  # fmt: skip
 BATCH = 100
-"""Texts that are put into one run."""
+"""Texts for one run."""
 FIELDS = ("recipe", "compound", "note", "grid", "abrasive", "abrasive_id", "experiment")
 REFUSED = re.compile(r"^<text>:\d+:\d+: ")
 
@@ -90,7 +90,7 @@ def exported(folder: Path, plans: Sequence[Plan]) -> dict[str, str]:
 
 
 def meant(plans: Sequence[Plan], number: int) -> dict[str, str]:
-    """Return the texts that an export's row of a plan is to give back, by column."""
+    """Return the texts expected from an export's row of a plan, by column."""
     (condition,) = condition_records(plans[number])
     own = {"compound": condition.compound, "note": condition.note, "grid": condition.grid}
     return own | {f"{key}.{number}": value for key, value in plans[number].metadata.items()}
@@ -110,7 +110,7 @@ def with_pandas(text: str) -> list[dict[str, str]]:
 
 
 def check_batch(folder: Path, plans: Sequence[Plan]) -> None:
-    """Hold every text of these plans against what two readers find in the exports."""
+    """Compare every text of these plans with the exports as two readers read them."""
     for name, table in exported(folder, plans).items():
         for read in (with_csv, with_pandas):
             rows = read(table)

@@ -1,4 +1,4 @@
-"""A run's results: reduced from what is committed, in recipe order."""
+"""A run's results: reduced from committed repeats, in recipe order."""
 
 from __future__ import annotations
 

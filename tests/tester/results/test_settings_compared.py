@@ -1,4 +1,4 @@
-"""A setting that a run measures several times: lines, flags and JSON of what is found."""
+"""A setting that a run measures several times: lines, flags and JSON of the findings."""
 
 from __future__ import annotations
 

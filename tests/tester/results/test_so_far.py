@@ -1,4 +1,4 @@
-"""A condition as it grows: the last value is that of the table, U needs a scatter, the open repeat is reduced."""
+"""A condition as it grows: the last value equals the table's, U needs a scatter, the open repeat is reduced."""
 
 from __future__ import annotations
 

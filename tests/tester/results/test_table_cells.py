@@ -1,4 +1,4 @@
-"""Cells: numbers stay numbers, text reads back as it was meant and is never a formula."""
+"""Cells: numbers stay numbers, text reads back unchanged and is never a formula."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A run whose process ends in the middle of its second repeat, as far as the store knows."""
+"""A run whose process ends in the middle of its second repeat, as the store sees it."""
 
 from __future__ import annotations
 

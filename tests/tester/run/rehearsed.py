@@ -1,4 +1,4 @@
-"""A recipe on a simulated rig in virtual time, whose hands are the rig itself, or behind its console."""
+"""A recipe on a simulated rig in virtual time, with the rig's own hands or hands behind its console."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ LONGEST_S = 20_000.0
 
 
 class Kept(NullRecorder):
-    """Keeps repeats, trips and what hands have done."""
+    """Keeps repeats, trips and the hands' actions."""
 
     def __init__(self) -> None:
         super().__init__()
@@ -47,7 +47,7 @@ class Kept(NullRecorder):
         return len(self.trips)
 
     def event(self, t_s: float, kind: str, text: str, severity: str = "info", data: str = "") -> None:
-        """Keep what hands have done."""
+        """Keep an action of the hands."""
         if kind == "hands":
             self.hands.append(text)
 

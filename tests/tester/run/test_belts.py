@@ -1,4 +1,4 @@
-"""A whole run with two belts on the twin; a run that dies in the middle of a change, and is resumed."""
+"""A whole run with two belts on the twin; a run that dies in the middle of a change and is resumed."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def options(home: Path) -> SessionOptions:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run that went through."""
+    """A complete run."""
     home = tmp_path_factory.mktemp("whole")
     assert Session(options(home), Screen()).run() == 0
     return next((home / "runs").iterdir())
@@ -49,7 +49,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def resumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run that died when a person was to change to the second belt, and went on."""
+    """A run that died when a person had to change to the second belt, and was resumed."""
     home = tmp_path_factory.mktemp("resumed")
     ask = Prompts.ask
 

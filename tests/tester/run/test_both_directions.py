@@ -1,4 +1,4 @@
-"""A run in both directions of slip, from its recipe to its tables: whole, cut off within a pair, and told."""
+"""A run in both directions of slip, from its recipe to its tables: complete, killed within a pair, and reported."""
 
 from __future__ import annotations
 
@@ -30,12 +30,12 @@ TEXT = (
     .replace("load: 200 N", "load: 50 N")
 )
 SETS = ("sim.scatter=0", "sim.running_in=0", "sim.wear=0", "sim.friction_heat_fraction=0")
-"""A rubber that stands still, and a cell with all its imperfections."""
+"""A rubber with a constant coefficient, and a cell with all its imperfections."""
 SEED = 3
 
 
 class StoppedError(Exception):
-    """The process ends here, as far as the store knows."""
+    """The process ends here, as the store sees it."""
 
 
 def go(home: Path) -> Path:
@@ -52,7 +52,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def resumed(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The same run, killed as its fourth repeat began, the second of a pair, and gone on with."""
+    """The same run, killed as its fourth repeat began, the second of a pair, and resumed."""
     home = tmp_path_factory.mktemp("cut")
     begin = RunWriter.begin_repeat
 
@@ -78,7 +78,7 @@ def table(folder: Path, name: str) -> list[dict[str, str]]:
 
 
 def turned_deg(mu: float) -> float:
-    """Return by what angle this session's cell is seen to be off, crosstalk in it: half the sum of what it shows."""
+    """Return the apparent angle error of this session's cell, with crosstalk: half the sum of its readings."""
     still = SensorParameters(force_rms=0.0, moment_rms=0.0, zero_drift=0.0, linearity=0.0)
     cell = LoadCellSensor(still, 1.0, SEED, 23.0)
     (x, _, z, _), (back, _, pressed, _) = (cell.measure(side * mu * 50.0, 0.0, 50.0, 0.0) for side in (1.0, -1.0))

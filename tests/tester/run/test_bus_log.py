@@ -1,4 +1,4 @@
-"""Frame logs of a run, read back by the tools they are for."""
+"""Frame logs of a run, read back by their tools."""
 
 from __future__ import annotations
 
@@ -118,7 +118,7 @@ def test_the_axes_file_turns_counts_into_units(folder: Path) -> None:
 
 
 class Adapter(FrameByFrame):
-    """A CAN adapter that hears a frame whenever it is asked."""
+    """A CAN adapter that always has a frame to receive."""
 
     def send(self, can_id: int, data: bytes, now: float) -> None:
         self.tell_sent(can_id, data, now)

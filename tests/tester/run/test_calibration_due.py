@@ -1,4 +1,4 @@
-"""A certificate that has ended: a start says so or is refused, by the rig file; what weights found is in the budget."""
+"""An expired certificate: a start warns or is refused, by the rig file; the budget has the weights' result."""
 
 from __future__ import annotations
 

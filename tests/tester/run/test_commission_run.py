@@ -1,4 +1,4 @@
-"""The person of a commissioning, as the screen of a recipe that is run in it."""
+"""The person of a commissioning, as the screen of a recipe run in it."""
 
 from __future__ import annotations
 

@@ -20,7 +20,7 @@ NOT_FOR_A_PRESS = ("elmo_simpliq", "kinco_fd")
 
 
 def overrides(profile: str) -> tuple[str, ...]:
-    """Give every axis a profile, the press where it is fit for it."""
+    """Give every axis a profile, the press only a suitable one."""
     press = GENERIC if profile in NOT_FOR_A_PRESS else profile
     axes = dict.fromkeys(load_rig().drives(), profile) | {"press": press}
     return tuple(f"axes.{name}.profile={one}" for name, one in axes.items())

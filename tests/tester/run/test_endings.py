@@ -1,4 +1,4 @@
-"""What the endings of parts make of a run."""
+"""The end of a run from the ends of its parts."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def test_a_run_of_which_nothing_was_begun_is_stopped() -> None:
 
 
 class Told:
-    """A run that keeps what it was told."""
+    """A run that keeps its commands."""
 
     def __init__(self) -> None:
         self.said: list[tuple[str, bool, bool]] = []

@@ -15,7 +15,7 @@ from tests.campaigns.faults.stage import Stage
 
 @cache
 def started() -> Stage:
-    """Return a run that holds its load."""
+    """Return a run with its load held."""
     stage = Stage(SHORT)
     while not (stage.run.engine.ctx.contact.loaded and stage.rig.plant.force_z_n > 100.0):
         stage.tick()
@@ -23,7 +23,7 @@ def started() -> Stage:
 
 
 def under(text: str, seconds: float) -> Stage:
-    """Run on from there for some time with a script; ``t=`` counts from there."""
+    """Continue from there for some time with a script; ``t=`` counts from there."""
     stage = started().copy()
     begin = stage.next_s
     injections = LANGUAGE.parse_script([text.replace("t=", f"t={begin + 0.001:.6f} s: ", 1)])

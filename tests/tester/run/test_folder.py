@@ -1,4 +1,4 @@
-"""What is to be done as parts: a simulated rig can be there several times, a real one cannot."""
+"""Runs in parts: a simulated rig can exist several times, a real one cannot."""
 
 from __future__ import annotations
 

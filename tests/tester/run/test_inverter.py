@@ -1,4 +1,4 @@
-"""Rigs whose turning axes have frequency inverters: what check refuses, and runs on the twin."""
+"""Rigs whose turning axes have frequency inverters: refusals of check, and runs on the twin."""
 
 from __future__ import annotations
 

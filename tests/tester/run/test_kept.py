@@ -1,4 +1,4 @@
-"""What a run keeps of its drives' set-up at its good end."""
+"""The drives' set-up that a run keeps at its good end."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A simulated run that rubs by a kept law: it resumes by the copy in its folder, whatever became of the original."""
+"""A simulated run with a kept law: it resumes with the copy in its folder, whatever happened to the original."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ OTHER = {"a": {"value": 0.3, "logarithm": True}, "n": {"value": 0.2}, "m": {"val
 
 @pytest.fixture(scope="module")
 def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run by a kept law that died in the middle of its second repeat, beside its recipe and its law."""
+    """A run with a kept law that died in the middle of its second repeat, beside its recipe and its law."""
     home = tmp_path_factory.mktemp("cut")
     (home / "law.yaml").write_text(example_text(compound="1#"), encoding="utf-8")
     return cut_short(home, sets=(*SETS, f"sim.friction_model={home / 'law.yaml'}"))

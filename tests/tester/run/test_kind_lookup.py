@@ -1,4 +1,4 @@
-"""What a rig's kind brings is found by the rig's kind; a kind that brings no runs is refused, with what it lacks."""
+"""A rig's kind supplies its parts; a kind without runs is refused, and the missing parts are named."""
 
 from __future__ import annotations
 

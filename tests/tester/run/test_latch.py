@@ -1,4 +1,4 @@
-"""What has tripped on a hardware rig stays latched until somebody has acknowledged it, whoever looks."""
+"""A trip on a hardware rig stays latched, for every client, until it is acknowledged."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a run does before its first scan, so that no scan waits for it."""
+"""Work of a run before its first scan, so that no scan waits for it."""
 
 from __future__ import annotations
 

@@ -34,7 +34,7 @@ from tests.tester.run.test_session import TABLES, Ended, Screen
 
 TWO = AT_ONCE.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n').replace("14 rev", "7 rev")
 STEADY = ("sim.running_in=0", "sim.scatter=0")
-"""A coefficient that stands still, seen through the noise of every sensor: the window is soon long enough."""
+"""A constant coefficient, with the noise of every sensor: the window is soon long enough."""
 ROOT = Path(__file__).parents[3]
 
 
@@ -129,7 +129,7 @@ def test_several_jobs_on_a_real_rig_are_a_usage_error(tmp_path: Path) -> None:
 
 
 class Acting:
-    """Hands at the rig that do something when they mount a given wheel."""
+    """Hands at the rig that call a function when they mount a given wheel."""
 
     def __init__(self, hands: Attendant, wheel: int, act: Callable[[], object]) -> None:
         self.hands, self.wheel, self.act = hands, wheel, act
@@ -151,7 +151,7 @@ class Acting:
 
 @pytest.fixture
 def when_mounted(monkeypatch: pytest.MonkeyPatch) -> Callable[[int, Callable[[TickedWorld], object]], None]:
-    """Have something done to the simulated rig when a wheel is mounted."""
+    """Call a function with the simulated rig when a wheel is mounted."""
 
     def arrange(wheel: int, act: Callable[[TickedWorld], object]) -> None:
         def connect(rig: RigConfig, seed: int, log: object, **_: object) -> tuple[Ports, TickedWorld, Attendant]:
@@ -252,7 +252,7 @@ def test_an_interrupt_from_the_terminal_stops_all_processes(tmp_path: Path) -> N
         record = json.loads(process.stdout.readline())
         if str(record.get("title", "")).startswith(("1#", "2#")):
             begun.add(record["part"])
-    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to everybody
+    os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to every process
     *_, end, folder = process.stdout.read().splitlines()
     assert process.wait() == 130 and json.loads(end)["outcome"] == "stopped"
     with RunReader(tmp_path / folder) as reader:

@@ -1,4 +1,4 @@
-"""What a real rig must have on record before a run begins."""
+"""Records of a real rig required before a run begins."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Runs with references: the reserved wheel comes and goes, the belt stays, also over an interruption."""
+"""Runs with references: the reserved wheel is mounted and removed, the belt stays, also across an interruption."""
 
 from __future__ import annotations
 
@@ -41,7 +41,7 @@ def options(home: Path) -> SessionOptions:
 
 @pytest.fixture(scope="module")
 def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """A run that went through."""
+    """A complete run."""
     home = tmp_path_factory.mktemp("whole")
     assert Session(options(home), Screen()).run() == 0
     return next((home / "runs").iterdir())
@@ -49,7 +49,7 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def resumed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float]:
-    """A run that died on the reserved wheel when that was on again, and went on; the belt's travel on record then."""
+    """A run that died with the reserved wheel mounted again, and was resumed; the belt's travel on record then."""
     home = tmp_path_factory.mktemp("resumed")
     begin = RunWriter.begin_repeat
 
@@ -71,7 +71,7 @@ def resumed(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, float]:
 
 
 def belt(folder: Path) -> list[float]:
-    """Return the belt's grip as the rig knew it at each repeat that was begun."""
+    """Return the belt's true grip at the start of each repeat."""
     with closing(sqlite3.connect(folder / DATABASE)) as database:
         return [value for (value,) in database.execute("SELECT value FROM truth WHERE name = 'belt' ORDER BY id")]
 
@@ -104,7 +104,7 @@ def test_the_belt_goes_on_below_all_of_them(whole: Path) -> None:
     assert travelled == sorted(travelled) and travelled[0] > 0.0
     grip = belt(whole)
     assert grip == sorted(grip, reverse=True)
-    # What the run has reckoned is what the rig knows: a tenth in each 100 m, within the errors of speed and contact.
+    # The run's estimate matches the rig's truth: a tenth in each 100 m, within the errors of speed and contact.
     assert [0.9 ** (one / 100.0) for one in travelled] == pytest.approx(grip, rel=0.01)
 
 
@@ -115,7 +115,7 @@ def test_it_goes_on_with_the_reserved_wheel_and_the_belt_as_it_was(resumed: tupl
         last = max(one.counterface_m for one in reader.travels().values())
     assert last > before_m > 0.0
     grip = belt(folder)
-    # As far as the record tells: what came after the last state that was stored, a second of wall time, is lost.
+    # From the record: everything after the last stored state, a second of wall time, is lost.
     assert grip[-1] < grip[0] and grip[-1] == pytest.approx(0.9 ** (last / 100.0), rel=0.01)
 
 

@@ -41,7 +41,7 @@ MOUNTED = {"pin-on-disc": "specimen 1 SBR", "grosch": "specimen 1 SBR", "sim": "
 
 
 class Scripted:
-    """A channel whose answers a test writes."""
+    """A channel with answers from a test."""
 
     def __init__(self) -> None:
         self.sent: list[str] = []

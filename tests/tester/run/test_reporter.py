@@ -1,4 +1,4 @@
-"""A screen that fails: what is still tried, and who is told."""
+"""A screen that fails: further attempts, and its report."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from tester.run.reporter import LastingScreen, ReportScreen
 
 
 class Failing(ReportScreen):
-    """A screen whose named methods find nobody; notes what it was asked to do."""
+    """A screen whose named methods fail; keeps its calls."""
 
     answer_yes = False
     can_ask = True

@@ -1,4 +1,4 @@
-"""An interrupted run goes on: at the right repeat, with the wheel as it was, and only if it is the same test."""
+"""An interrupted run resumes: at the right repeat, with the same wheel, and only if it is the same test."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ def cut(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture
 def again(cut: Path, tmp_path: Path) -> Path:
-    """A copy of that run, to be gone on with."""
+    """A copy of that run, to be resumed."""
     shutil.copytree(cut, tmp_path / cut.name)
     return tmp_path / cut.name
 
@@ -65,7 +65,7 @@ def test_a_run_goes_on_at_the_first_uncommitted_repeat(again: Path) -> None:
         (3, 1, RepeatStatus.VALID),
     ]
     assert condition.status is not None and condition.status.value == "ok"
-    # Rig time goes on: nothing of the second stretch lies before the end of the first.
+    # Rig time continues: nothing of the second stretch lies before the end of the first.
     assert first.origin_s == 0.0 and second.origin_s > repeats[1].begun_s - 1.0
     assert repeats[0].result.ended_s < second.origin_s < repeats[2].result.started_s
 
@@ -198,7 +198,7 @@ def test_no_run_is_a_usage_error(tmp_path: Path, capsys: pytest.CaptureFixture[s
 
 
 def test_verify_names_what_is_not_as_it_was_left(again: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert invoke(["verify", str(again)]) == 6  # cut off, and sound as far as it goes
+    assert invoke(["verify", str(again)]) == 6  # interrupted, but valid up to there
     resume(again)
     with (again / "conditions.csv").open("a") as file:
         file.write("1\n")

@@ -1,4 +1,4 @@
-"""A run's wires to a machine: opened on one clock, connected through, given back."""
+"""A run's wires to a machine: opened on one clock, connected, released."""
 
 from __future__ import annotations
 
@@ -69,7 +69,7 @@ def machine() -> Iterator[Machine]:
 
 
 def connect(config: RigConfig, log: BusLog) -> Connector:
-    """Connect to every device of a machine and give the wires back."""
+    """Connect to every device of a machine and release the wires."""
     ports = hardware_ports(config, log)
     devices = Devices(config, ports)
     connector = Connector(devices, config, WheelArming(devices, config), config.arming.listen_s)

@@ -1,4 +1,4 @@
-"""Files of compounds and surfaces go with a run: copied, on record with their hash, verified, kept by a resumed run."""
+"""A run keeps its files of compounds and surfaces: copied, on record with hash, verified, kept when resumed."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ def again(cut: Path, tmp_path: Path) -> Path:
 
 @pytest.fixture(scope="module")
 def ended(cut: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The run, gone on with to its end."""
+    """The run, resumed to its end."""
     folder = tmp_path_factory.mktemp("ended") / cut.name
     shutil.copytree(cut, folder)
     assert Session(SessionOptions(), Screen()).resume(folder) == 0

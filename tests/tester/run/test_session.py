@@ -1,4 +1,4 @@
-"""A session: what a run leaves in its folder, and its exit codes."""
+"""A session: the files in a run's folder, and its exit codes."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ TABLES = ("appendix.csv", "conditions.csv", "repeats.csv")
 
 
 class Screen(ReportScreen):
-    """Keeps what it is told."""
+    """Keeps its messages."""
 
     def __init__(self, *, answer_yes: bool = True) -> None:
         self.answer_yes = answer_yes
@@ -65,7 +65,7 @@ class Screen(ReportScreen):
 
 
 class Ended:
-    """What a session left."""
+    """Results of a session."""
 
     def __init__(self, code: int, screen: Screen, out: Path) -> None:
         self.code, self.screen, self.out = code, screen, out
@@ -95,7 +95,7 @@ def run(home: Path, *overrides: str, seed: int = 0, text: str = SHORT, screen: S
 
 @pytest.fixture(scope="module")
 def done(tmp_path_factory: pytest.TempPathFactory) -> Ended:
-    """A run that is complete."""
+    """A complete run."""
     return run(tmp_path_factory.mktemp("done"), *QUIET)
 
 
@@ -108,7 +108,7 @@ def incomplete(tmp_path_factory: pytest.TempPathFactory) -> Ended:
 
 @pytest.fixture(scope="module")
 def undecided(tmp_path_factory: pytest.TempPathFactory) -> Ended:
-    """A run on the default rig, whose window is too short to show that the coefficient stands still."""
+    """A run on the default rig, whose window is too short to show that the coefficient is constant."""
     return run(tmp_path_factory.mktemp("undecided"), seed=1)
 
 
@@ -117,7 +117,7 @@ Prepare = Callable[[TickedWorld, Attendant], Attendant]
 
 @pytest.fixture
 def at_the_rig(monkeypatch: pytest.MonkeyPatch) -> Callable[[Prepare], None]:
-    """Have something done at the simulated rig before the run begins; it returns whose hands the rig gets."""
+    """Call a function with the simulated rig before the run begins; it returns the rig's hands."""
 
     def arrange(prepare: Prepare) -> None:
         def connect(rig: RigConfig, seed: int, log: BusLog | None, **_: object) -> tuple[Ports, TickedWorld, Attendant]:
@@ -220,7 +220,7 @@ def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp
     record(writer, 1, [0.9] * 3)
     record(writer, 2, [float("nan")])
     record(writer, 3, [0.9] * 3, flags=CARRY_OVER)
-    writer.finish("done", rig_seconds=60.0)  # cut off before its tables
+    writer.finish("done", rig_seconds=60.0)  # interrupted before its tables
     writer.close()
     screen = Screen()
     Session(SessionOptions(), screen).resume(tmp_path)
@@ -351,7 +351,7 @@ def test_an_unexpected_error_leaves_an_interrupted_run_and_a_safe_rig(tmp_path: 
 
 
 HANDLER_BEFORE = signal.getsignal(signal.SIGINT)
-"""A process that a shell began in the background has the key ignored."""
+"""A process started in the background by a shell ignores the key."""
 
 
 def test_the_handlers_of_before_are_back_after_a_run(done: Ended) -> None:

@@ -1,4 +1,4 @@
-"""What devices were set to: a start names what is not as in the last good run on the rig."""
+"""Device parameters: a start names those that differ from the last good run on the rig."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a simulated rig can be told while it lives."""
+"""Commands to a simulated rig while it runs."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ class Bench:
         self.heard: list[tuple[float, int]] = []
 
     def live(self, until_s: float) -> None:
-        """Live in steps of 10 ms and note the frames that arrive."""
+        """Run in steps of 10 ms and keep the frames that arrive."""
         while self.rig.now_s < until_s - 1e-6:
             self.life.advance(self.rig.now_s + 0.01)
             with suppress(BusLost):  # which is one of the faults
@@ -59,7 +59,7 @@ def bench() -> Bench:
 
 
 def test_a_fault_is_there_from_now_on_for_its_time(bench: Bench) -> None:
-    bench.live(0.5)  # heartbeats do not come before somebody asks for them
+    bench.live(0.5)  # no heartbeats before a client requests them
     bench.rig.can.send(0x602, bytes.fromhex("2B17100032000000"), bench.rig.now_s)  # 0x1017: 50 ms
     bench.live(1.0)
     [answer] = bench.say("fault belt drive heartbeat lost for 1 s")

@@ -13,7 +13,7 @@ from tests.tester.run.reached import reached_over_tcp
 
 @pytest.fixture
 def reached(tmp_path: Path) -> RigConfig:
-    """Return what a written file is read back as."""
+    """Write a file and read it back."""
     rig = load_rig("sim", ("sim.ambient=31 degC",))
     addresses = {name: ("127.0.0.1", 1000 + number) for number, name in enumerate(rig.lines)}
     path = tmp_path / "rig.yaml"

@@ -1,4 +1,4 @@
-"""What a simulated rig knows: on record where it is asked for, and out of reach of the analysis."""
+"""The truth of a simulated rig: on record on request, and out of reach of the analysis."""
 
 from __future__ import annotations
 

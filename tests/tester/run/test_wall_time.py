@@ -1,4 +1,4 @@
-"""What a dry run costs, and how much of it is left: on a clock of which every scan takes the same time."""
+"""Wall time of a dry run, total and remaining: on a clock that advances equally with every scan."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ def test_without_a_run_the_stated_pace_counts(tmp_path: Path) -> None:
 
 
 def stored(under: Path, name: str, wall_s: float, *, kind: str = KIND, host: str = "", simulated: bool = True) -> None:
-    """Store a run of 1000 s of rig time, of which 200 s were leapt."""
+    """Store a run of 1000 s of rig time, 200 s of it leapt."""
     begun = datetime(2024, 2, 21, 14, tzinfo=UTC)
     (under / name).mkdir(parents=True)
     writer = open_writer(under / name)
@@ -59,7 +59,7 @@ def test_other_runs_do_not_count(tmp_path: Path, other: dict[str, object]) -> No
 
 
 def timed(monkeypatch: pytest.MonkeyPatch, home: Path, rig: str, text: str) -> tuple[float, Path, Estimate]:
-    """Run a recipe on a clock that only scans move; return the wall time, the folder and what was expected."""
+    """Run a recipe on a clock that only scans move; return the wall time, the folder and the estimates."""
     recipe = home / "recipe.yaml"
     recipe.write_text(text, encoding="utf-8")
     session = Session(SessionOptions(recipe=str(recipe), rig=rig, out=home / "runs"), Answering())

@@ -1,4 +1,4 @@
-"""Parts side by side: one that ends early stops the others, one whose process is lost has failed."""
+"""Parts side by side: a part that ends early stops the others, a part whose process is lost has failed."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ Result = PartEnd | BaseException | None
 
 
 class Pool:
-    """A pool whose workers have ended before anybody looks."""
+    """A pool whose workers have ended before the first check."""
 
     results: dict[int, Result]
 
@@ -60,7 +60,7 @@ class Pool:
 
 
 class Carried:
-    """What came of parts side by side."""
+    """Results of parts side by side."""
 
     def __init__(self, results: dict[int, Result]) -> None:
         Pool.results = results

@@ -1,4 +1,4 @@
-"""A weight is read when it hangs still, and not before."""
+"""A weight is read when it hangs still, not earlier."""
 
 from __future__ import annotations
 

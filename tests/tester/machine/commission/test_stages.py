@@ -1,4 +1,4 @@
-"""Stages of a step: answers are taken back, refusals repeat a part."""
+"""Stages of a step: answers can be withdrawn, refusals repeat a part."""
 
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ class BenchPart(PlainPart):
 
 
 class BenchPlant:
-    """A force that is what a test says."""
+    """A force set by a test."""
 
     ambient_c = 21.0
 

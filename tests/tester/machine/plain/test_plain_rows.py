@@ -1,4 +1,4 @@
-"""Every row of a plain machine in virtual time: against its delay, and against what is not known."""
+"""Every row of a plain machine in virtual time: against its delay, and with unknown inputs."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A plain machine on its wires: from the first frame to standstill, held, stopped, and with everything that fails."""
+"""A plain machine on its wires: from the first frame to standstill, held, stopped, and with every failure."""
 
 from __future__ import annotations
 

@@ -1,6 +1,6 @@
-"""Stored runs as the page's process tells of them, without a store: for the page alone, at any size.
+"""Stored runs as the page's process sends them, without a store: for the page alone, at any size.
 
-The numbers follow a formula, so that a test knows what must be on the page. Samples are answered as least and greatest
+The numbers follow a formula, so that a test knows the expected page. Samples are answered as least and greatest
 value of buckets, as the page's process does.
 """
 
@@ -104,7 +104,7 @@ class Samples:
     """A million samples, or any number, and their answer for a window."""
 
     def __init__(self, count: int, length_s: float) -> None:
-        """Make them: ``count`` samples over ``length_s`` rig seconds."""
+        """Make ``count`` samples over ``length_s`` rig seconds."""
         self.t: Array = np.linspace(0.0, length_s, count)
         wave = np.sin(self.t / 7.0)
         self.columns: dict[str, Array] = {
@@ -112,7 +112,7 @@ class Samples:
             "slip_mm_s": 300.0 + 2.0 * wave, "slip_setpoint_mm_s": np.full(count, 300.0),
             "surface_c": 40.0 + wave, "surface_setpoint_c": np.full(count, 40.0),
         }  # fmt: skip
-        self.columns["friction"][count // 2] = 1.9  # one sample that no window may hide
+        self.columns["friction"][count // 2] = 1.9  # one sample that every window must show
 
     def window(self, columns: list[str], from_s: float, to_s: float, points: int) -> dict[str, Any]:
         """Answer the query `samples`."""

@@ -1,4 +1,4 @@
-"""A real browser in front of the real page process, whose service a test plays and whose stored runs it tells.
+"""A real browser in front of the real page process; a test plays its service and its stored runs.
 
 The page process and the service work in a thread of their own; the browser is driven from the test's. Chromium alone
 is used: an installed one, found by name; the driver brings none.
@@ -69,10 +69,10 @@ def browser(home: Path | None = None) -> Iterator[Browser]:
 
 
 class Played:
-    """Stored runs that a test tells: answers by the question's name. ``asked`` keeps the questions."""
+    """Stored runs played by a test: answers by the question's name. ``asked`` keeps the questions."""
 
     def __init__(self) -> None:
-        """Tell of seven runs of 165 conditions."""
+        """Begin with seven runs of 165 conditions."""
         self.text = ""
         self.names = [records.RUN, *(f"2026-11-{day}T08-00-00-table-2" for day in range(10, 16))]
         self.states: dict[int, str] = {
@@ -122,7 +122,7 @@ class Played:
 
 
 class Front:
-    """The page in a browser, and what it is in front of. ``call`` runs something on the service's side."""
+    """The page in a browser, and the service behind it. ``call`` runs something on the service's side."""
 
     def __init__(self, stage: PageStage, played: Played, loop: asyncio.AbstractEventLoop) -> None:
         """Take the parts; ``played`` answers about stored runs."""
@@ -186,7 +186,7 @@ class Front:
 
 @contextmanager
 def front(folder: Path, *, stored: bool = True, **options: Any) -> Iterator[Front]:
-    """Serve the page. ``stored``: the stored runs are told by a test, else they are those of the folder. ``options``:
+    """Serve the page. ``stored``: runs played by a test; by default those of the folder. ``options``:
     of the page process.
     """
     played = Played()

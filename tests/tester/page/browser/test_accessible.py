@@ -1,4 +1,4 @@
-"""Every view for everybody: axe, keyboard alone, sizes of targets, three widths, light and dark."""
+"""Accessibility of every view: axe, keyboard alone, sizes of targets, three widths, light and dark."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ Scheme = Literal["light", "dark"]
 
 
 def prepared(on: Front, page: Page, view: str) -> None:
-    """Open a view with something open in it."""
+    """Open a view and a dialog or detail in it."""
     on.go(page, view)
     page.wait_for_timeout(300)
     if view == "map":

@@ -1,4 +1,4 @@
-"""Texts from people, devices and recipes stay texts: no view makes a node, a handler or a request of one."""
+"""Texts from people, devices and recipes stay texts: no view turns one into a node, a handler or a request."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ ONE = " ".join(TEXTS)[:1900]
 """All in one text: of the 200 kinds many are in every field at once."""
 COUNT = """() => document.querySelectorAll('img, iframe, x-hostile, math, template, base, form[action], style, b,'
   + 'main script, a[href^="javascript"], [onerror], [onload]').length"""
-"""Nodes that only a text can have made."""
+"""Nodes that only a text can create."""
 
 
 def hostile_state(text: str) -> Any:
@@ -49,7 +49,7 @@ def hostile_state(text: str) -> Any:
 
 
 def every_view(on: Front, page: Page) -> None:
-    """Open every view and what opens in it."""
+    """Open every view and everything that opens in it."""
     for view in ("live", "map", "results", "replay", "queue", "paired"):
         on.go(page, view)
         page.wait_for_timeout(150)

@@ -1,6 +1,6 @@
-"""`tester page --lan` in a real browser: it comes over TLS where the browser trusts the authority, and else not at all.
+"""`tester page --lan` in a real browser: it loads over TLS only where the browser trusts the authority.
 
-The browser trusts what the certificate store of its user holds: one in the test's folder, made by certutil.
+The browser trusts its user's certificate store, which certutil makes in the test's folder.
 """
 
 from __future__ import annotations

@@ -155,7 +155,7 @@ def test_trends_are_in_rig_time_with_their_own_set_points(on: Front, desktop: Br
     for t_s in (7261.0, 7261.25, 7261.5):
         row = (t_s + 40.0, t_s, 0.7, 199.6, 200.0, 299.8, 300.0, 40.4, 40.0)
         on.call(lambda t_s=t_s, row=row: on.stage.fake.show(run_state(t_s=t_s), row))
-        page.wait_for_timeout(50)  # the newest snapshot alone is sent to a page that is behind
+        page.wait_for_timeout(50)  # a page that is behind gets the newest snapshot only
     for name in ("1 min", "whole run"):
         page.get_by_role("button", name=name).click()
         expect(page.get_by_role("button", name=name)).to_have_attribute("aria-pressed", "true")

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 SLOW_MS = 60_000
-"""How long an answer from stored runs may take in a test beside others: it costs that only where it fails."""
+"""Time limit of an answer from stored runs beside other tests: only a failure takes that long."""
 elsewhere: list[str] = []
 
 

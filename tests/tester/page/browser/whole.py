@@ -33,7 +33,7 @@ def beside(work: Coroutine[Any, Any, T]) -> T:
 
 
 class Whole:
-    """Both processes. ``stopped_at`` and the like are asked of the service by a client of its own."""
+    """Both processes. ``stopped_at`` and similar methods ask the service through their own client."""
 
     def __init__(self, folder: Path) -> None:
         """``folder`` gets the sockets and the runs."""
@@ -44,7 +44,7 @@ class Whole:
 
     @property
     def origin(self) -> str:
-        """The page's place."""
+        """The page's address."""
         return f"http://127.0.0.1:{self.port}"
 
     def begin(self) -> None:

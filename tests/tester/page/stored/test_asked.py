@@ -1,4 +1,4 @@
-"""Questions about stored runs: the values are those that `tester show` prints, and bad questions are refused."""
+"""Questions about stored runs: the values match `tester show`, and bad questions are refused."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Samples at every zoom: nothing that was recorded lies outside what is drawn."""
+"""Samples at every zoom: no recorded value lies outside the drawing."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from tester.store.run_reader import RunReader
 
 @pytest.fixture
 def own(run: Path, tmp_path: Path) -> Path:
-    """Return a copy of the run, without the file that another test may have left beside its record."""
+    """Return a copy of the run, without a file left beside its record by another test."""
     return Path(shutil.copytree(run, tmp_path / run.name, ignore=shutil.ignore_patterns("*.pyramid")))
 
 

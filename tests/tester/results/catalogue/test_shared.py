@@ -30,11 +30,11 @@ def postgres_tools() -> Path | None:
 
 @pytest.fixture
 def postgres(tmp_path: Path) -> Iterator[str]:
-    """A PostgreSQL server of this test's own, on a socket in its folder; gives its URL."""
+    """A PostgreSQL server for this test, on a socket in its folder; yields its URL."""
     tools = postgres_tools()
     if tools is None:
         pytest.skip("no PostgreSQL server is installed")
-    # The server refuses to run as root: then it runs as the user of Debian's package.
+    # The server refuses to run as root: as root, run it as the user of Debian's package.
     as_user = ["runuser", "-u", "postgres", "--"] if os.geteuid() == 0 else []
     if as_user and subprocess.run([*as_user, "true"], capture_output=True).returncode:
         pytest.skip("this is root, and there is no user postgres")
@@ -65,11 +65,11 @@ def postgres(tmp_path: Path) -> Iterator[str]:
 
 
 def check(catalogue: Catalogue, runs: Path) -> None:
-    """Hold a catalogue against the index next to the same runs, through changes of them."""
+    """Compare a catalogue with the index next to the same runs, through changes of them."""
     local = open_catalogue(runs, "")
     small_run(runs / "one")
     small_run(runs / "two", ([0.5, 0.52, 0.51],))
-    for _ in range(2):  # the second time nothing is new
+    for _ in range(2):  # nothing is new the second time
         for one in (catalogue, local):
             refresh(one, runs)
     for wanted in (

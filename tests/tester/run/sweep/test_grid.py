@@ -1,4 +1,4 @@
-"""Axes of a sweep as they are written on the command line."""
+"""Axes of a sweep on the command line."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A sweep: its tasks, what arrives when, and what is left of it whatever happens."""
+"""A sweep: its tasks, the order of arrivals, and its files after any end."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ QUICK = SHORT.replace("14 rev", "7 rev")
 
 
 class Heard:
-    """An audience; it may have had enough."""
+    """An audience that may cancel."""
 
     def __init__(self, enough: int = 0) -> None:
         self.enough = enough
@@ -37,13 +37,13 @@ class Heard:
         self.cases.append(result.case)
         assert done == len(self.cases)
         with (self.folder / "runs.csv").open(encoding="utf-8") as file:
-            assert len(list(csv.reader(file))) == 1 + done  # it is in the file before anybody hears of it
+            assert len(list(csv.reader(file))) == 1 + done  # it is in the file before it is reported
         if done == self.enough:
             raise KeyboardInterrupt
 
 
 def at_once(result_of: Callable[[SweepTask], CaseResult]) -> Callable[..., Future[CaseResult]]:
-    """Return an executor's submit that has every result at once."""
+    """Return an executor's submit with immediate results."""
 
     def submit(work: object, task: SweepTask, /) -> Future[CaseResult]:
         future: Future[CaseResult] = Future()

@@ -1,4 +1,4 @@
-"""What many runs are together."""
+"""Tables over many runs."""
 
 from __future__ import annotations
 
