@@ -1,10 +1,10 @@
-"""A service without a rig: the real gateway on a real socket, and an owner that a test plays.
+"""A service without a rig: the real gateway on a real socket, and an owner played by a test.
 
 async with FakeService(folder) as fake:
     client = await Client.connect(fake.address, control=True)
     fake.show(state)                      # a snapshot to everybody
     fake.event("trip", "overload", "trip")
-    await client.command(Hold())          # accepted, unless fake.refusals says why not
+    await client.command(Hold())          # accepted, unless fake.refusals has a reason
     assert fake.orders[-1].action == Hold()
 """
 
@@ -31,12 +31,12 @@ from tests.tester.service.views import state as a_state
 
 
 class FakeService:
-    """Plays the owner of a rig for the clients under test. ``uid``: the user that may come in."""
+    """Plays the owner of a rig for the clients under test. ``uid``: the permitted user."""
 
     def __init__(self, folder: Path, *, service: str = "life-1", uid: int | None = None) -> None:
         """Listen in ``folder`` once entered; the first state is ``tests.tester.service.views.state()``."""
         self.notes: list[bytes] = []
-        """Notes for the sender of notices."""
+        """Messages for the sender of notices."""
         self.gateway = Gateway(self._hear, service, "0.0", Queries(folder), self.notes.append)
         self.address: Address = UnixAddress(folder / "service.sock")
         self.orders: list[Order] = []
@@ -82,7 +82,7 @@ class FakeService:
         self.gateway.take(b"p" + to_json(plan))
 
     def give(self, results: GivenResults) -> None:
-        """Send results, as the process that works them out does."""
+        """Send results, as the process that computes them does."""
         self.gateway.results.publish(to_json(results))
 
     def _hear(self, line: bytes) -> None:

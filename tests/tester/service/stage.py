@@ -1,4 +1,4 @@
-"""A service on a stage: a script in the place of its clients, called at every poll; no socket, no process.
+"""A service on a stage: a script replaces its clients, called at every poll; no socket, no process.
 
     def script(stage):
         yield stage.order(RunRecipe(...))
@@ -35,11 +35,11 @@ from tester.service.state_view import PlanView, StateView
 
 Script = Generator[Order | Presence | list[Order | Presence] | None]
 MOST_POLLS = 20_000
-"""A script that has not ended by then hangs."""
+"""Time limit of a script."""
 
 
 class Stage(GatewayLink):
-    """Hears the script, and keeps what would have been said to clients."""
+    """Receives the script's commands, and keeps messages for clients."""
 
     def __init__(self, folder: Path, script: Callable[[Stage], Script]) -> None:
         super().__init__(LinkConfig(UnixAddress(folder / "service.sock"), folder / "service.json", folder, "sim"))
@@ -54,7 +54,7 @@ class Stage(GatewayLink):
         self.told: list[Notice | NoticeOver | NextNeeded] = []
         self.polls = 0
         self.silent = False
-        """The screen that controls gives no sign of life."""
+        """The controlling screen is silent."""
         self.service: Service | None = None
         self._script = script(self)
         self._orders = 0
@@ -66,14 +66,14 @@ class Stage(GatewayLink):
         return Order(client, f"client {client}", self._orders, action)
 
     def until(self, reached: Callable[[StateView], bool]) -> Script:
-        """Wait for a state that is so."""
+        """Wait for a state that meets a condition."""
         while not (self.views and reached(self.views[-1])):
             yield None
 
     def texts(self, kind: str) -> list[str]:
         return [event.text for event in self.events if event.kind == kind]
 
-    # -- what a gateway does --------------------------------------------------------------------------------------
+    # -- the gateway's part ---------------------------------------------------------------------------------------
 
     @property
     def watched(self) -> bool:
@@ -128,7 +128,7 @@ class Stage(GatewayLink):
 
 
 def planned_here(task: Task, meanwhile: Callable[[], str]) -> Prepared:
-    """Plan in this process: starting another one for every test would take longer than the test."""
+    """Plan in this process: starting a process for every test would take longer than the test."""
     why = meanwhile() or meanwhile()
     if why:
         raise CannotStartError(why)
@@ -139,7 +139,7 @@ def planned_here(task: Task, meanwhile: Callable[[], str]) -> Prepared:
 
 
 class AssessedHere:
-    """Looks at items in this process, at the next poll: another process for every look takes longer than the test."""
+    """Checks items in this process, at the next poll: a process for every check takes longer than the test."""
 
     looked: ClassVar[list[AssessTask]] = []
 
@@ -164,7 +164,7 @@ class AssessedHere:
 
 
 def play(folder: Path, script: Callable[[Stage], Script], *overrides: str, rig: str = "sim") -> Stage:
-    """Let a service live until the script has ended; return what was said."""
+    """Run a service until the script has ended; return the messages."""
     stage = Stage(folder, script)
     stage.service = Service(ServiceOptions(rig, overrides, folder / "runs"), stage)
     with pytest.MonkeyPatch.context() as patch:

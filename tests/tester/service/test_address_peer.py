@@ -1,4 +1,4 @@
-"""Who is at the other end of a connection, as the record says it."""
+"""The peer of a connection, as recorded."""
 
 from __future__ import annotations
 

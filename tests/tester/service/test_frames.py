@@ -37,11 +37,11 @@ from tests.drivers.modbus_rig import Quantities
 from tests.tester.kinds.wheel_on_belt.bench import plan_of
 
 PATIENCE_S = 2.0
-"""A byte that has not come through a pseudo-terminal by then does not come."""
+"""Time limit of a byte through a pseudo-terminal."""
 
 
 class FarEnd:
-    """A pseudo-terminal with devices at its far end, which answer when they are asked to."""
+    """A pseudo-terminal with devices at its far end, which answer on request."""
 
     def __init__(self, *slaves: ModbusSlave) -> None:
         self._slaves = slaves

@@ -29,7 +29,7 @@ from tests.tester.service.views import state
 ROOT = Path(__file__).parents[3]
 ROW = (1.0, 2.0)
 BUSY_S = 60.0
-"""A machine at full load answers within this: starting the process that answers takes seconds of its time."""
+"""Time limit of an answer on a machine at full load: starting the answering process takes seconds."""
 posix = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
 
 
@@ -44,7 +44,7 @@ def gateway(tmp_path: Path) -> Iterator[GatewayLink]:
 
 
 async def connected(gateway: GatewayLink, address: UnixAddress | TcpAddress | None = None) -> Client:
-    """Connect while the owner goes on talking, as it does between two ticks."""
+    """Connect while the owner keeps sending, as it does between two ticks."""
     where = address or gateway.config.address
     for _ in range(400):
         gateway.receive()

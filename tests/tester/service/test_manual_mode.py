@@ -58,7 +58,7 @@ def jog(stage: Stage, *steps: Jog) -> Script:
 
 
 def stays_manual(stage: Stage, seconds: float) -> Script:
-    """Let time pass, and see that nothing has ended the mode."""
+    """Let time pass; fail if the mode has ended."""
     due_s = stage.views[-1].t_s + seconds
     yield from stage.until(lambda view: view.t_s > due_s or not manual(view))
     assert stage.views[-1].mode == "MANUAL"
@@ -294,7 +294,7 @@ def test_it_disarms_when_its_client_loses_control(tmp_path: Path) -> None:
 
     stage = play(tmp_path, script)
     assert stage.texts("control")[-1] == "no client has control"
-    # Of 60 s: it was not the time that ran out.
+    # Of 60 s: the time had not run out.
     assert min(view.manual.left_s for view in stage.views if view.manual.left_s is not None) > 20.0
 
 
@@ -302,7 +302,7 @@ def test_it_ends_at_once_when_control_was_taken_while_it_was_being_armed(tmp_pat
     def script(stage: Stage) -> Script:
         yield ARMED
         arm = stage.order(Arm())
-        stage.presence = Presence("client 2", 2, 1, False)  # heard with it, before the mode begins
+        stage.presence = Presence("client 2", 2, 1, False)  # received with it, before the mode begins
         yield arm
         yield from stage.until(off)
 
@@ -311,7 +311,7 @@ def test_it_ends_at_once_when_control_was_taken_while_it_was_being_armed(tmp_pat
 
 
 def held(stage: Stage) -> Script:
-    """Hold the rig while it is moved by hand."""
+    """Hold the rig during manual motion."""
     yield from armed(stage)
     yield from jog(stage, Jog("both", 1))
     yield stage.order(Hold())

@@ -1,4 +1,4 @@
-"""The process that sends notices, for real: started where it is wanted, and again if it dies; nothing is lost."""
+"""The real process that sends notices: started on demand, restarted if it dies; nothing is lost."""
 
 from __future__ import annotations
 
@@ -96,7 +96,7 @@ def test_a_sender_that_is_killed_is_started_again_and_neither_loses_nor_doubles(
     assert len(watched.processes) > 2
     idents = [mail.ident for mail in relay.taken]
     assert list(dict.fromkeys(subjects(relay))) == [str(number) for number in range(6)]
-    assert len(set(idents)) == 6  # whatever came twice has one Message-ID
+    assert len(set(idents)) == 6  # duplicates have one Message-ID
 
 
 def test_what_waits_is_sent_by_the_next_life_of_the_service(
@@ -156,7 +156,7 @@ def test_settings_that_are_mended_while_the_sender_runs_count(
     forwarder.open()
     forwarder.take(NOTE.dump_json(notice(1)))
     settings.write_text(whole)
-    for number in range(2, 40):  # each note makes the sender look at its settings
+    for number in range(2, 40):  # each message makes the sender check its settings
         forwarder.take(NOTE.dump_json(notice(number)))
     relay.wait_for(1)
     forwarder.close()

@@ -1,4 +1,4 @@
-"""A service that a screen has started sends notices by the user's settings; secrets are in their file only."""
+"""A service started by a screen sends notices by the user's settings; secrets are in their file only."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ from tests.tester.notices.scene import ANNA
 pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 SECRETS = {"mail_password": "pw-7f3c1e", "ntfy_token": "tk-90ab12", "apprise": "json://u:ap-55d0@127.0.0.1:1/"}
 PIECES = ("pw-7f3c1e", "tk-90ab12", "ap-55d0", "env-31d9")
-"""What must be found nowhere."""
+"""Strings that must appear nowhere."""
 
 
 async def connected() -> Client:

@@ -1,4 +1,4 @@
-"""What happens at the rig becomes notices: which, with which words, and when one is over."""
+"""Events at the rig become notices: which, their words, and when each is over."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A recipe planned by a process of its own."""
+"""A recipe planned by a separate process."""
 
 from __future__ import annotations
 

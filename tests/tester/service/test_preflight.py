@@ -1,4 +1,4 @@
-"""The pre-flight list: what is wrong is said to be wrong, and what nobody knows is not said to be right."""
+"""The pre-flight list: faults are reported as faults, and unknown states never as good."""
 
 from __future__ import annotations
 

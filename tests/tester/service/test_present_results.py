@@ -1,4 +1,4 @@
-"""Results of the run under way: those of the tables, worked out in a process of its own while somebody looks."""
+"""Results of the run under way: those of the tables, computed in a separate process while a client views them."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Questions answered by a process each: one that has gone, hangs, or has nobody left who waits for it."""
+"""Queries, each answered by a process: one that died, hangs, or has lost its client."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ from tester.service.queries import Queries, QueryError
 
 @pytest.fixture
 def process(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> list[str]:
-    """Put a program of the test's in the place of the command: the text of it, to be filled in; it leaves its pid."""
+    """Replace the command by a test's program, a text to be filled in; it leaves its pid."""
     text = [""]
     note = f"import os, pathlib; pathlib.Path({str(tmp_path / 'pid')!r}).write_text(str(os.getpid())); "
     monkeypatch.setattr(queries, "tester_command", lambda *_: [sys.executable, "-I", "-c", note + text[0]])

@@ -1,4 +1,4 @@
-"""The queue in the service: a script in the place of its clients, real runs on the simulated rig."""
+"""The queue in the service: a script replaces its clients, real runs on the simulated rig."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def _every_poll_is_shown(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 def until(stage: Stage, reached: Callable[[QueueView], bool]) -> Script:
-    """Wait for a queue that is so."""
+    """Wait for a queue that meets a condition."""
     while not (stage.queues and reached(stage.queues[-1])):
         yield None
 
@@ -313,7 +313,7 @@ ASKS = replace(ADD, yes=False, answer_within_s=3600.0)
 
 
 class FastClock:
-    """A clock that gains a minute at every look at a question."""
+    """A clock that gains a minute at every check of a question."""
 
     def __init__(self) -> None:
         self.now_s = 0.0
@@ -324,7 +324,7 @@ class FastClock:
 
 
 def unanswered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *adds: QueueAdd) -> Stage:
-    """Play a queue whose first question has no answer, until its item is over and the queue has had time to go on."""
+    """Play a queue whose first question gets no answer, until its item is over and the queue had time to continue."""
     monkeypatch.setattr("tester.service.unanswered.clock", FastClock())
 
     def script(stage: Stage) -> Script:

@@ -24,7 +24,7 @@ WHO = "user id 1000"
 
 @pytest.fixture(autouse=True)
 def _patient(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("tests.tester.service.stage.MOST_POLLS", 2_000_000)  # a thread reads the record meanwhile
+    monkeypatch.setattr("tests.tester.service.stage.MOST_POLLS", 2_000_000)  # meanwhile a thread reads the record
 
 
 def in_mode(mode: str) -> Callable[[StateView], bool]:
@@ -36,7 +36,7 @@ def over(view: StateView) -> bool:
 
 
 def answered(stage: Stage, action: RigAction) -> Script:
-    """Send an order of a client that the system knows, and wait for its answer."""
+    """Send an order of a client with a known user, and wait for its answer."""
     stage.accepted.pop(action.command, None)
     stage.refused.pop(action.command, None)
     yield replace(stage.order(action, 2), peer=WHO)

@@ -1,4 +1,4 @@
-"""How punctual the scan of a run is, as clients are told."""
+"""Punctuality of a run's scan, as reported to clients."""
 
 from __future__ import annotations
 

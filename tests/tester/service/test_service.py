@@ -1,4 +1,4 @@
-"""The service with a script in the place of its clients."""
+"""The service with a script instead of its clients."""
 
 from __future__ import annotations
 
@@ -221,7 +221,7 @@ def test_stop_from_its_own_lane_stops_a_run_before_anything_else_is_heard(tmp_pa
 def test_stop_does_not_wait_for_a_record_that_is_closed(
     begin: RunRecipe | Arm, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    """Nobody polls while a record is closed, which waits for the disk: the lane's own thread answers."""
+    """No poll happens while a record is closed, which waits for the disk: the lane's own thread answers."""
     monkeypatch.setattr("tester.service.service.MANUAL_LAPSE", 50.0)
     ticking: list[bool] = []
     finish = RunWriter.finish

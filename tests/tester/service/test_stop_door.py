@@ -1,4 +1,4 @@
-"""The door for STOP, turned by hand: no process, no waiting."""
+"""The door for STOP, stepped by the test: no process, no waiting."""
 
 from __future__ import annotations
 
@@ -16,7 +16,7 @@ pytestmark = pytest.mark.skipif(os.name != "posix", reason="Unix sockets")
 
 
 class Bench:
-    """A door between callers and an owner that the test plays."""
+    """A door between callers and an owner played by the test."""
 
     def __init__(self, folder: Path, *, uid: int | None = None, token: str = "") -> None:
         self.path = folder / "stop"
@@ -41,7 +41,7 @@ class Bench:
             self.door.turn(0.0)
 
     def told(self) -> list[str]:
-        """Return what the owner was told, without numbers."""
+        """Return the owner's messages, without numbers."""
         me = f" (user id {os.getuid()})"
         return [" ".join(line.split(" ")[2:]).replace(me, "") for line in self.lines()]
 
@@ -68,7 +68,7 @@ def bench(tmp_path: Path) -> Iterator[Bench]:
 
 
 def heard(caller: socket.socket) -> bytes | None:
-    """Return what came, b"" for a hang-up, None for nothing."""
+    """Return the received bytes, b"" for a hang-up, None for nothing."""
     try:
         return caller.recv(100)
     except BlockingIOError:

@@ -1,4 +1,4 @@
-"""STOP's lane with its real process."""
+"""The STOP lane with its real process."""
 
 from __future__ import annotations
 

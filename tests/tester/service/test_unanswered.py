@@ -1,4 +1,4 @@
-"""A question that waits too long: what is stopped, what the queue does then, and what counts as a person."""
+"""A question that waits too long: what stops, the queue's next step, and what counts as a person."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What a look at a run shows, tick by tick: the service itself looks when wall time says so."""
+"""Views of a run, tick by tick: the service itself takes one at intervals of wall time."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ def test_a_soak_is_shown_with_how_long_it_has_been_in_band() -> None:
         stage.tick()
         if (soak := watch.panel.soak(now)) is not None:
             shown.append(soak)
-    # First the surface is brought near, which needs no time in band; then it soaks, near ambient in band at once.
+    # First the surface approaches its setpoint, without time in band; then it soaks, near ambient in band at once.
     soaking = [soak for soak in shown if soak.for_s]
     assert shown[0].for_s == shown[0].in_band_s == 0.0
     assert {(soak.target_c, soak.within_k, soak.for_s) for soak in soaking} == {(24.0, 2.0, 2.0)}

@@ -1,4 +1,4 @@
-"""A state view as a run at work gives it, for tests of whoever shows one."""
+"""State views of a run under way, for tests of their displays."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ from tester.service.state_view import (
 )
 
 HOSTILE = "[/x] [bold]\x1b[31m\u202e$(rm) ' \" <b> \x00"
-"""Text that means something to terminals, markup, shells, HTML: it must come through, and be shown as it is."""
+"""Text with a meaning for terminals, markup, shells, HTML: it must arrive and be shown unchanged."""
 
 
 def value(key: str, label: str, unit: str, now: float | None, wanted: float | None, top: float) -> Value:
@@ -75,7 +75,7 @@ def state(mode: str = "RUN") -> StateView:
 
 
 def with_alarm(view: StateView) -> StateView:
-    """Return the state with a trip that nobody has acknowledged."""
+    """Return the state with an unacknowledged trip."""
     trip = Alarm(1, "overload", 1, "active", "normal force above the rig's limit", 461.0, 450.0, "N",
                  "the rig stands; nothing moves before it is acknowledged", "ack", True, 7261.5,
                  "2024-02-21T14:05:09.000Z")  # fmt: skip
@@ -100,7 +100,7 @@ def hostile(view: StateView) -> StateView:
 
 
 def plan() -> PlanView:
-    """Return four of the steps around the present one; what is left of them and beyond adds up to that of ``state``."""
+    """Return four steps around the present one; their remaining time and the later steps' add up to ``state``'s."""
     return PlanView("Table 2, compound 1#", 60, 19, (
         PlanStep(19, "install", "install wheel 1 (1#)", "done", 60.0, 64.2, 60.0),
         PlanStep(20, "pre_grind", "pre-grind 4 min at 200 N", "done", 270.0, 268.8, 270.0),

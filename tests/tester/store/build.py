@@ -51,12 +51,12 @@ CONDITION = ConditionInfo(
 CONDITIONS = [CONDITION, replace(CONDITION, condition=2, row=2, setpoint=CONDITION.setpoint.but(load=200.0))]
 SPECIMENS = [SpecimenInfo(1, "1#", "NR, N234")]
 PIECE = PieceInfo(1, 1, 1, "1#", 2.0, 90.0, 89.8, 55.0, 20.0)
-"""The one that ``record`` measures on."""
+"""The piece of ``record``."""
 BURSTS = [Burst(1, 20, 10.0, 17.0, 24.0, 26.0), Burst(2, 10, 40.0, 43.5, 24.0, 25.5)]
 
 
 class Clock:
-    """A wall clock that stands still until it is moved; seconds."""
+    """A wall clock that moves only on command; seconds."""
 
     def __init__(self) -> None:
         self.now = 100.0
@@ -158,7 +158,7 @@ def small_run(
 ) -> Path:
     """Write a finished run of conditions 1, 2, ... with these repeats, made-up samples each; return its folder.
 
-    Every commit waits for the disk, so one that was made before is copied.
+    Every commit waits for the disk, so an earlier folder is copied.
     """
     folder.mkdir(parents=True, exist_ok=True)
     before = _MADE.get(key := f"{values} {rows}")

@@ -8,7 +8,7 @@ from tester.store.disk import FreeRoom
 
 
 def hanging(answer: Event) -> Callable[[Path], int]:
-    """Return a disk that says nothing before it is let."""
+    """Return a disk that answers nothing until released."""
 
     def ask(_folder: Path) -> int:
         answer.wait()

@@ -1,4 +1,4 @@
-"""A disk that is full, and a record that is taken away: told in words, nothing lost that could be kept."""
+"""A full disk, and a removed record: reported in words, and everything that can be kept is kept."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ DISK_BYTES = 2_000_000
 
 @pytest.fixture
 def disk(tmp_path: Path) -> Iterator[Path]:
-    """A file system of 2 MB of its own, where the system lets us make one."""
+    """A separate file system of 2 MB, where the system allows one."""
     folder = tmp_path / "disk"
     folder.mkdir()
     made = False
@@ -42,7 +42,7 @@ def begun(folder: Path, clock: Clock, reserve: int = 0) -> RunWriter:
 
 
 def fill(folder: Path) -> Path:
-    """Take all the room that is left."""
+    """Fill the remaining space."""
     ballast = folder / "ballast"
     with suppress(OSError), ballast.open("wb", buffering=0) as file:
         while True:

@@ -1,4 +1,4 @@
-"""Another table of channels: what stands in it is stored, averaged, verified and exported."""
+"""Another table of channels: its channels are stored, averaged, verified and exported."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Parts put together: times follow one another, keys are the run's, and it can be done again."""
+"""Merged parts: times follow one another, keys are the run's, and a merge can be repeated."""
 
 from __future__ import annotations
 
@@ -100,7 +100,7 @@ def test_what_a_table_is_said_to_have_is_in_it(table: str) -> None:
         columns = {row[1] for row in database.execute(f"PRAGMA table_info({table})")}
     kind, times = TABLES[table], TIMES.get(table, ())
     assert {*times, *filter(None, (kind.key, kind.repeat))} <= columns
-    # Every rig time is among them: what ends in _s and is neither a duration nor a rate.
+    # Every rig time is among them: names that end in _s and are neither a duration nor a rate.
     assert {name for name in columns if name.endswith("_s")} - set(times) <= {
         "wheel_speed_m_s",
         "belt_speed_m_s",
@@ -207,6 +207,6 @@ def test_what_a_person_has_said_of_a_repeat_survives_a_merge(tmp_path: Path) -> 
     folder = small_run(tmp_path / "run")
     add_exclusion(folder, StoredExclusion(0, 1, 2, 1, 1, "debris", "ada", "2024-02-21T15:00:00.000Z", "0.1.0", ""))
     with Merge(folder):
-        pass  # what parts have recorded is taken out, and comes again from them
+        pass  # records of parts are removed, and come again from the parts
     with RunReader(folder) as reader:
         assert reader.repeats() == [] and [one.target for one in reader.exclusions()] == [(1, 2, 1)]

@@ -29,7 +29,7 @@ def columns(database: sqlite3.Connection, table: str) -> set[str]:
 
 
 def test_the_tables_are_those_of_the_released_text() -> None:
-    # Derived from the record classes: one that gets a field changes this text, and needs a migration.
+    # Derived from the record classes: a new field changes this text, and needs a migration.
     assert Path(__file__).with_name("schema.sql").read_text(encoding="utf-8") == record_schema.SCHEMA
 
 

@@ -101,7 +101,7 @@ def test_a_run_that_is_under_way_was_not_cut_off(tmp_path: Path) -> None:
 
 R = RunStatus
 TABLE = {
-    # recorded: nobody holds it, every value there; a value missing; somebody holds it; held, a value missing
+    # recorded: not held, every value there; a value missing; held; held, a value missing
     "running": (R.INTERRUPTED, R.INTERRUPTED, R.RUNNING, R.RUNNING),
     "interrupted": (R.INTERRUPTED, R.INTERRUPTED, R.RUNNING, R.RUNNING),
     "done": (R.DONE, R.INCOMPLETE, R.DONE, R.INCOMPLETE),

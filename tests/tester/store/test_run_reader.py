@@ -1,4 +1,4 @@
-"""The reader gives back what was recorded."""
+"""The reader returns the recorded values."""
 
 from __future__ import annotations
 

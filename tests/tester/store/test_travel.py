@@ -1,4 +1,4 @@
-"""How far counterface and piece have come: on record with each repeat, and for a run that goes on."""
+"""Travel of counterface and piece: on record with each repeat, and for a resumed run."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The writer: what is committed, when, and what happens when it cannot."""
+"""The writer: its commits, their times, and failures."""
 
 from __future__ import annotations
 
@@ -35,7 +35,7 @@ from tests.tester.store.build import (
 
 
 def count(folder: Path, sql: str) -> int:
-    """Return what another process sees: committed rows only."""
+    """Return another process's view: committed rows only."""
     connection = sqlite3.connect(f"file:{folder / 'run.db'}?mode=ro", uri=True)
     found: int = connection.execute(sql).fetchone()[0]
     connection.close()
@@ -47,12 +47,12 @@ def rows_on_disk(folder: Path) -> int:
 
 
 def setting(writer: RunWriter, name: str) -> object:
-    """Return a setting of the writer's own connection, which nobody else can see."""
+    """Return a setting of the writer's own connection, visible only there."""
     return writer._connection.execute(f"PRAGMA {name}").fetchone()[0]
 
 
 def limit_pages(writer: RunWriter, pages: object) -> None:
-    """Let the file grow no further than so many pages; SQLite then says what it says of a full disk."""
+    """Limit the file to so many pages; SQLite then raises the error of a full disk."""
     writer._connection.execute(f"PRAGMA max_page_count = {pages}")
 
 
@@ -403,7 +403,7 @@ def test_what_a_full_disk_refused_is_written_a_second_later_when_there_is_room(t
     assert not ticket.done and writer.failed is not None
     limit_pages(writer, 1_000_000)
     writer.service()
-    assert not ticket.done  # not at once: a disk that is full is not asked ten times a second
+    assert not ticket.done  # not at once: a full disk is not retried ten times a second
     clock.now += 1.0
     writer.service()
     assert ticket.done and ticket.error is None

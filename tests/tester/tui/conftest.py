@@ -9,6 +9,6 @@ from tests.tester.tui.stage import House
 
 @pytest.fixture(scope="package")
 def house(tmp_path_factory: pytest.TempPathFactory) -> Iterator[House]:
-    """Return a stage that stays open for all tests that leave it as they found it."""
+    """Return a stage that stays open for all tests that restore it."""
     with House(tmp_path_factory.mktemp("house")) as made:
         yield made

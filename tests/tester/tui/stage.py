@@ -1,4 +1,4 @@
-"""A screen in front of a service that the test plays, and what is on it as text."""
+"""A screen in front of a service played by the test, and its text."""
 
 from __future__ import annotations
 
@@ -29,10 +29,10 @@ PLAN: JsonValue = {"conditions": 2, "rig_seconds": 2700.0, "sliding_m": 120.0, "
 
 @dataclass(slots=True)
 class PlayedQueries(Queries):
-    """Answers at once, without processes: every recipe is as good as its text says.
+    """Answers at once, without processes: a recipe's text decides whether it is good.
 
     While ``checking`` or ``planning`` is not set such questions wait, ``waiting`` checks. ``planned`` and ``listed``
-    count what was asked for, ``answered`` the checks that were answered.
+    count requests, ``answered`` the answered checks.
     """
 
     checking: asyncio.Event = field(default_factory=asyncio.Event)
@@ -42,10 +42,10 @@ class PlayedQueries(Queries):
     planned: int = 0
     listed: int = 0
     stored: list[JsonValue] = field(default_factory=list[JsonValue])
-    """The runs that there are."""
+    """Existing runs."""
 
     async def answer(self, question: Query) -> JsonValue:
-        """Return what the service would."""
+        """Return the service's answer."""
         if isinstance(question, ListRuns):
             self.listed += 1
             return {"runs": self.stored}
@@ -61,7 +61,7 @@ class PlayedQueries(Queries):
         return {"problems": [{"line": 3, "column": 5, "message": "load: expected a unit [/x]"}] if bad else []}
 
 WAIT_S = 60.0
-"""How long something may take that a test waits for, s: it costs that only where the test fails."""
+"""Time limit of a test's waits, s: only a failure takes that long."""
 
 
 @dataclass(slots=True)
@@ -77,7 +77,7 @@ class Stage:
     """The screen that was shown first."""
 
     async def until(self, true: Callable[[], bool], what: str) -> None:
-        """Let both work until something is so: threads read files beside them, on a computer that others use too."""
+        """Let both work until a condition holds: threads read files beside them, on a shared computer."""
         clock = asyncio.get_running_loop().time
         late = clock() + WAIT_S
         while clock() < late:
@@ -112,7 +112,7 @@ class Stage:
         return self.app.options.view_only or all(str(one.path) in view.checked for one in view.recipes)
 
     def text(self) -> str:
-        """Return what is on the screen, a line a row."""
+        """Return the screen's text, a line a row."""
         return screen_text(self.app)
 
     def line(self, number: int) -> str:
@@ -121,13 +121,13 @@ class Stage:
 
 
 def screen_text(app: TesterApp) -> str:
-    """Return what is on the screen, dialogs included."""
+    """Return the screen's text with dialogs."""
     strips = app.screen._compositor.render_strips()  # the only way to the composed picture
     return "\n".join("".join(segment.text for segment in strip).rstrip() for strip in strips)
 
 
 def colours(app: TesterApp) -> set[str]:
-    """Return the colours that leave for the terminal."""
+    """Return the colours sent to the terminal."""
     strips = app.screen._compositor.render_strips()
     styles = [segment.style for strip in strips for segment in strip if segment.style is not None]
     return {str(colour) for style in styles for colour in (style.color, style.bgcolor) if colour is not None}
@@ -208,7 +208,7 @@ class House:
         self._runner.close()
 
     def play(self, scene: Callable[[Stage], Awaitable[None]]) -> None:
-        """Carry out a test: no dialog is open, Recipes are shown, nothing has been ordered, and no alarm stands."""
+        """Carry out a test: no dialog is open, Recipes are shown, nothing has been ordered, and there is no alarm."""
         on = self._stage
         assert on is not None
 

@@ -1,4 +1,4 @@
-"""Bus: frames that stand still, a filter, the support bundle; and a cursor that is seen without colour."""
+"""Bus: frozen frames, a filter, the support bundle; and a cursor visible without colour."""
 
 from __future__ import annotations
 
@@ -26,7 +26,7 @@ def frames(first: int) -> Frames:
 
 
 async def send(on: Stage, first: int) -> None:
-    """Have frames come to a screen that shows them."""
+    """Send frames to a screen that shows them."""
     on.app.scene.take(frames(first), None)
     on.app.scene_changed()
     await on.pilot.pause()
@@ -74,7 +74,7 @@ def test_the_bundle_holds_state_events_and_frames(tmp_path: Path, monkeypatch: p
 
 
 def styles(on: Stage, text: str) -> list[Style]:
-    """Return the styles in which a text stands on the screen."""
+    """Return the styles of a text on the screen."""
     strips = on.app.screen._compositor.render_strips()
     return [segment.style or Style() for strip in strips for segment in strip if segment.text.strip().startswith(text)]
 

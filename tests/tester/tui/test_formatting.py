@@ -1,4 +1,4 @@
-"""Numbers, times, bars, plots: what is drawn from what."""
+"""Drawn numbers, times, bars and plots."""
 
 from __future__ import annotations
 

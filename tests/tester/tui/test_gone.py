@@ -1,4 +1,4 @@
-"""A service that is gone: died or ended, what its devices do, what to do."""
+"""A service that is gone: died or ended, its devices' reaction, the remedy."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ ALONE = "Each drive makes a quick stop by itself (wheel: 200 ms)."
 
 
 async def lose(on: Stage, *, ended: bool) -> None:
-    """Let the service die, or end in order."""
+    """Kill the service, or end it in order."""
     await on.show(replace(a_state(), alone=ALONE))
     if ended:
         on.fake.gateway.take(b"b")

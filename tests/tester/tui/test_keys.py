@@ -1,4 +1,4 @@
-"""What the keys order, and what must be seen first."""
+"""Orders of the keys, and what must be shown first."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""A machine that the screens have never seen: they draw it from what the service tells of it."""
+"""A machine unknown to the screens: they draw it from the service's description."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ VALUES = (
 
 
 async def shown(on: Stage, *, armed: bool = False) -> None:
-    """Have a run on the track be under way."""
+    """Start a run on the track."""
     on.fake.machine(TRACK)
     await on.until(lambda: on.app.scene.machine == TRACK, "the tables arrive")
     view = replace(a_state("MANUAL" if armed else "RUN"), values=VALUES, manual=ManualView(60.0 if armed else None, ""))

@@ -1,4 +1,4 @@
-"""The end of a service that a screen started: at a person's word, only while nothing runs, and no other process's."""
+"""Ending a service that a screen started: on request, only while nothing runs, and no other process."""
 
 from __future__ import annotations
 
@@ -18,14 +18,14 @@ from tests.tester.tui.stage import House, Stage
 
 @pytest.fixture
 def place(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
-    """Return the folder of the service, which this process plays."""
+    """Return the folder of the service played by this process."""
     monkeypatch.setattr(own_service, "service_folder", lambda: tmp_path)
     return tmp_path
 
 
 @pytest.fixture
 def asked(monkeypatch: pytest.MonkeyPatch) -> list[tuple[int, int]]:
-    """Return the processes that are asked to end, each with the signal."""
+    """Return the processes to be ended, each with the signal."""
     found: list[tuple[int, int]] = []
     monkeypatch.setattr(own_service.os, "kill", lambda pid, number: found.append((pid, number)))
     return found

@@ -124,7 +124,7 @@ def test_results_show_the_conditions_and_their_repeats(run: Path, playback: Play
     row, found = condition(run, 1, 40)
     shown = stored.rows[0]
     assert replace(row, cells=shown.cells) == shown
-    assert row.cells[-4:] == shown.cells[-4:]  # the figures: which axes have a column is for the whole run to say
+    assert row.cells[-4:] == shown.cells[-4:]  # the figures: the whole run decides which axes have a column
     repeats = [one.repeat for one in found]
     assert len(found) >= 3 and repeats == list(range(1, len(found) + 1)) and all(one.trace for one in found)
 

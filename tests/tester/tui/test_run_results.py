@@ -20,11 +20,11 @@ from tests.tester.tui.test_screens import compare
 
 DESIGN = [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3), (25.0, 300.0, 0.3)]
 TITLES = ("1#, 300 mm/s, 100 N, 25 degC", "200 N", "300 N")
-"""Titles of the steps: in full, and by what differs."""
+"""Titles of the steps: in full, and by their differences."""
 
 
 def at_run(folder: Path, over: int, outcome: str = "running") -> StateView:
-    """Return the state of a stored run in its course."""
+    """Return the state of a stored run while it was under way."""
     view = state("RUN" if outcome == "running" else "OFFLINE")
     assert view.run is not None
     run = replace(view.run, name=folder.name, folder=str(folder), outcome=outcome, exit=0)
@@ -43,7 +43,7 @@ def steps(done: int) -> PlanView:
 
 
 def given(folder: Path) -> GivenResults:
-    """Return what the service sends of a stored run."""
+    """Return the service's messages about a stored run."""
     with RunReader(folder) as reader:
         return results_view(reader, results_of(reader), folder.name, running=False)
 

@@ -1,4 +1,4 @@
-"""Messages to the person: seen above the last line, also in a dialog, never over anything, and gone after a while."""
+"""Messages to the person: above the last line, also in a dialog, never over anything, removed after a while."""
 
 from __future__ import annotations
 

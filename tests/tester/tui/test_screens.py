@@ -1,4 +1,4 @@
-"""Every screen as it is drawn: normal, with an alarm, stale, without colour, in ASCII; and against what is in golden/.
+"""Every screen: normal, with an alarm, stale, without colour, in ASCII; compared with golden/.
 
 `TESTER_GOLDEN=write pytest tests/tester/tui/test_screens.py` writes the pictures anew; look at the difference.
 """
@@ -28,7 +28,7 @@ def _utc(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 async def at_screen(on: Stage, name: str, view: StateView) -> None:
-    """Go to a screen, with a state, and wait until it stands."""
+    """Go to a screen, with a state, and wait until it is complete."""
     await on.until(lambda: on.checked(), "the recipes are checked")
     await on.pilot.press(KEYS[name])
     await on.show(view, plan())
@@ -59,7 +59,7 @@ def test_an_accepted_risk_stands_on_every_screen(tmp_path: Path) -> None:
 
 
 def compare(name: str, text: str) -> None:
-    """Hold a picture against the one that was looked at."""
+    """Compare a picture with the approved one."""
     file = GOLDEN / f"{name}.txt"
     if os.environ.get("TESTER_GOLDEN") == "write":
         GOLDEN.mkdir(exist_ok=True)

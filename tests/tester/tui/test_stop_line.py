@@ -1,4 +1,4 @@
-"""STOP past a screen that stands still."""
+"""STOP past a frozen screen."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Silent(Driver):
 
 
 class Pressed(StopLine):
-    """Notes each press, and whether it was for a fast stop."""
+    """Keeps each press, and whether it was for a fast stop."""
 
     def __init__(self, address: UnixAddress, name: str) -> None:
         super().__init__(address, name)

@@ -1,4 +1,4 @@
-"""Trends: the setpoint as it was, rig time below, a line where another run begins."""
+"""Trends: the past setpoint, rig time below, a line where another run begins."""
 
 from __future__ import annotations
 

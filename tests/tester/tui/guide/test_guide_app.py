@@ -1,4 +1,4 @@
-"""`tester commission --tui`: real keys, on the simulated rig; steps, STOP, going on, bad answers."""
+"""`tester commission --tui`: real keys, on the simulated rig; steps, STOP, resuming, bad answers."""
 
 from __future__ import annotations
 
@@ -118,11 +118,11 @@ def test_stop_needs_no_screen_that_draws(tmp_path: Path) -> None:
         await on.answer_until("jog wheel first")
         await on.type("go")
         await on.until(person.moving.is_set, "the wheel moves")
-        driver.process_message(Key("f12", None))  # as the thread does that reads the terminal
+        driver.process_message(Key("f12", None))  # like the thread that reads the terminal
         person.pressed.set()
         engine = on.guide._thread
         assert engine is not None
-        engine.join(WAIT_S)  # the screen's loop stands still meanwhile
+        engine.join(WAIT_S)  # the screen's loop is blocked meanwhile
         assert not engine.is_alive()
         at_rest(on)
 
@@ -148,7 +148,7 @@ def test_what_is_no_answer_is_refused_in_words_and_reaches_nobody(tmp_path: Path
         await on.press(*["backspace"] * 7)
         assert "expected one of" not in on.text()
         await on.answer_until("jog wheel first")
-        await on.type("g")  # the word that moves something is typed in full
+        await on.type("g")  # a word that starts motion is typed in full
         assert 'expected "go"' in on.text() and on.app._asked is not None
         await on.press("backspace")
         await on.answer_until("jog wheel first read")

@@ -1,4 +1,4 @@
-"""The commissioning screen as it is drawn, against what is in golden/: `TESTER_GOLDEN=write` writes it anew."""
+"""The drawn commissioning screen, compared with golden/: `TESTER_GOLDEN=write` rewrites it."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""The commissioning screen before the simulated rig, at whose keyboard somebody types what the rig truly shows."""
+"""The commissioning screen before the simulated rig, with the rig's true readings typed at its keyboard."""
 
 from __future__ import annotations
 
@@ -60,7 +60,7 @@ class TwinStage:
         await self.press(*(KEYS.get(sign, sign) for sign in f"{text}\n"))
 
     async def until(self, true: Callable[[], bool], what: str) -> None:
-        """Let the engine work until something is so."""
+        """Let the engine work until a condition holds."""
         assert self.pilot is not None
         clock = asyncio.get_running_loop().time
         late = clock() + WAIT_S
@@ -84,7 +84,7 @@ class TwinStage:
         return found[0]
 
     async def answer_until(self, key: str) -> None:
-        """Answer what is asked, by the twin, until a question is asked; that one is left standing."""
+        """Answer questions from the twin, up to a given question, which stays open."""
         while True:
             await self.until(lambda: self.app._asked is not None or not self.app.seen.running, "a question")
             question = self.app._asked
@@ -96,12 +96,12 @@ class TwinStage:
             await self.until(lambda old=question: self.app._asked is not old, "the answer is taken")
 
     async def ended(self) -> None:
-        """Wait until the engine has ended and the screen says so."""
+        """Wait until the engine has ended and the screen shows it."""
         await self.until(lambda: not self.app.seen.running, "the engine ends")
         assert self.pilot is not None
         self.app.look()
         await self.pilot.pause()
 
     def text(self) -> str:
-        """Return what is on the screen."""
+        """Return the screen's text."""
         return screen_text(self.app)  # type: ignore[arg-type]
