@@ -83,7 +83,7 @@ def test_command_prints_its_figures_either_way_and_exits_1_on_a_miss(
     assert any(line.startswith(mark) and "0.72977" in line for line in capsys.readouterr().out.splitlines())
 
 
-def test_what_cannot_be_measured_misses_after_what_could(tmp_path: Path) -> None:
+def test_unmeasurable_figures_miss_and_come_after_the_measured_ones(tmp_path: Path) -> None:
     def broken(_: Bench) -> Iterator[Figure]:
         yield equal("first", 1, 1)
         raise ValueError("no such thing")

@@ -31,7 +31,7 @@ def test_rows_are_those_of_the_pages_tables(tmp_path: Path) -> None:
     assert list(rows_of(tmp_path)) == ["row track overload", "row track hot"]
 
 
-def test_what_is_gone_is_lost_unless_it_has_other_words_now() -> None:
+def test_a_removed_line_is_lost_unless_it_was_reworded() -> None:
     before = {"command sdo", "command sdo --type", "command eds", "key rig sim can"}
     now = {"command bus sdo", "command bus sdo --type", "key rig sim can"}
     assert missing(before, now) == ["command eds"]

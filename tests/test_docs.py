@@ -82,7 +82,7 @@ class Reader:
             (self.folder / note).write_text(text, encoding="utf-8")
 
 
-def test_the_tutorial_goes_as_it_says(tmp_path: Path) -> None:
+def test_the_tutorial_works_as_written(tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     steps = STEP.findall(TUTORIAL.read_text(encoding="utf-8"))
     assert len(steps) == 8
@@ -119,7 +119,7 @@ def to_report() -> str:
     return TO_REPORT.read_text(encoding="utf-8")
 
 
-def test_the_way_to_a_report_begins_as_its_page_says(tmp_path: Path) -> None:
+def test_the_way_to_a_report_begins_as_its_page_states(tmp_path: Path) -> None:
     reader = Reader(tmp_path)
     steps = STEP.findall(to_report())
     assert len(steps) == 3
@@ -169,7 +169,7 @@ def test_the_script_runs_a_recipe(tmp_path: Path) -> None:
     assert len(table.read_text(encoding="utf-8").splitlines()) == 3
 
 
-def test_the_reading_of_the_example_travels_as_its_page_says() -> None:
+def test_the_reading_of_the_example_travels_as_its_page_states() -> None:
     page = READING.read_text(encoding="utf-8")
     cell = Sensor(load_profile("four_axis_transmitter"), 1, ModbusLink("rtu", 115200, "N"))
     cell.set_tare((0.0, 0.0, 0.4, 0.0))
@@ -184,7 +184,7 @@ def test_the_reading_of_the_example_travels_as_its_page_says() -> None:
         assert said in page
 
 
-def test_what_the_page_on_kinds_shows_of_the_lamp_is_the_lamps() -> None:
+def test_the_page_on_kinds_quotes_the_lamp() -> None:
     quoted = re.findall(r"<!-- as in (\S+) -->\n```python\n(.*?)```", KIND.read_text(encoding="utf-8"), re.DOTALL)
 
     assert len(quoted) == 3
@@ -230,7 +230,7 @@ def test_the_page_on_the_paper_quotes_what_its_commands_print(
 
 @pytest.mark.parametrize("compound", ["1#", "2#", "3#"])
 @pytest.mark.parametrize("angle", [0, 10, 20, 30])
-def test_the_page_on_the_paper_quotes_what_is_predicted(
+def test_the_page_on_the_paper_quotes_the_predictions(
     compound: str, angle: int, capsys: pytest.CaptureFixture[str]
 ) -> None:
     held = ["--slip", "300 mm/s", "--load", "200 N", "--temperature", "25 degC", "--sideslip", f"{angle} deg"]

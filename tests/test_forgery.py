@@ -37,7 +37,7 @@ BY_ITS_COEFFICIENTS = (
 
 
 @pytest.mark.parametrize("forgery", FORGERIES, ids=lambda forgery: forgery.name)
-def test_a_forgery_is_told(runs: tuple[Path, Path], forgery: Forgery, tmp_path: Path) -> None:
+def test_a_forgery_is_reported(runs: tuple[Path, Path], forgery: Forgery, tmp_path: Path) -> None:
     kept, without, kept_all_anew, _ = told(*runs, forgery, tmp_path)
     assert (kept, without, kept_all_anew) == (True, True, True)
 
@@ -50,7 +50,7 @@ def test_the_coefficients_report_it_even_with_all_made_anew(
     assert told(*runs, forgery, tmp_path)[3]
 
 
-def test_a_head_from_before_is_told_with_what_came_since(
+def test_an_earlier_head_is_reported_with_the_later_changes(
     runs: tuple[Path, Path], capsys: pytest.CaptureFixture[str]
 ) -> None:
     from tester.store.run_reader import RunReader
@@ -66,7 +66,7 @@ def test_a_head_that_is_no_hash_is_refused(runs: tuple[Path, Path]) -> None:
     assert invoke(["verify", str(runs[0]), "--head", "abc"]) == 2
 
 
-def test_all_made_anew_over_what_is_right_is_another_head(runs: tuple[Path, Path], tmp_path: Path) -> None:
+def test_rebuilding_everything_over_correct_data_gives_another_head(runs: tuple[Path, Path], tmp_path: Path) -> None:
     import shutil
 
     folder = tmp_path / runs[1].name

@@ -42,7 +42,7 @@ def test_no_module_of_a_package_loads_a_screen_plotting_or_fitting_library(packa
     assert not loaded_by(EVERY_MODULE.format(names=[package])) & {"textual", "matplotlib", "scipy", "pandas"}
 
 
-def test_no_driver_loads_numpy_or_what_reads_files() -> None:
+def test_no_driver_loads_numpy_or_file_readers() -> None:
     assert not loaded_by(EVERY_MODULE.format(names=["drivers"])) & {"numpy", "yaml", "pydantic", "rich", "click"}
 
 
@@ -54,7 +54,7 @@ def test_simulator_does_not_load_the_application() -> None:
     assert "tester" not in loaded_by(EVERY_MODULE.format(names=["sim"]))
 
 
-def test_stop_loads_only_what_sends_it() -> None:
+def test_stop_loads_only_its_sender() -> None:
     code = """
 from tester.cli.main import invoke
 from tester.service.stop_call import StopCall

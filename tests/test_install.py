@@ -34,7 +34,7 @@ def test_a_copy_has_the_sources_and_no_environment(tmp_path: Path) -> None:
 
 
 @posix
-def test_a_command_is_told_with_both_streams_and_its_exit_code(tmp_path: Path) -> None:
+def test_a_command_is_reported_with_both_streams_and_its_exit_code(tmp_path: Path) -> None:
     told = carry_out("echo one; echo two >&2; exit 3", tmp_path)
     assert (told.code, told.text) == (3, "one\ntwo\n") and told.cpu_s > 0.0
 
@@ -53,7 +53,7 @@ def test_no_cache_and_no_wish_to_compile_is_handed_on(tmp_path: Path, monkeypatc
 
 
 @posix
-def test_an_output_is_heard_piece_by_piece_with_its_time(tmp_path: Path) -> None:
+def test_an_output_is_read_piece_by_piece_with_its_time(tmp_path: Path) -> None:
     pieces: list[tuple[str, float]] = []
     told = carry_out("echo one; echo two", tmp_path, heard=lambda piece, at_s: pieces.append((piece, at_s)))
     assert "".join(piece for piece, _ in pieces) == told.text == "one\ntwo\n"
@@ -116,7 +116,7 @@ def test_the_exit_code_is_1_where_a_figure_misses(
     assert any(line.startswith(f"{mark} ".ljust(5)) for line in capsys.readouterr().out.splitlines())
 
 
-def test_what_cannot_be_measured_misses(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unmeasurable_figures_miss(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     def one(_: Path) -> Iterator[Figure]:
         """Nothing."""
         raise OSError("no package index")

@@ -126,5 +126,5 @@ def test_a_class_that_is_defined_twice_is_found_nested_or_private_or_not(tmp_pat
     assert defined_twice(tmp_path) == {"A": ["sim/one.py:1", "sim/two.py:1"], "_B": ["sim/one.py:2", "sim/two.py:3"]}
 
 
-def test_a_class_name_stands_once() -> None:
+def test_class_names_are_unique() -> None:
     assert defined_twice(ROOT) == {}

@@ -52,7 +52,7 @@ def test_predict_example_gives_the_published_value(capsys: pytest.CaptureFixture
     assert capsys.readouterr().out == "0.72977\n"
 
 
-def test_table_shows_what_the_model_gives(capsys: pytest.CaptureFixture[str]) -> None:
+def test_table_agrees_with_the_model(capsys: pytest.CaptureFixture[str]) -> None:
     rows = blocks("csv")[0].splitlines()[1:]
     for row in rows:
         compound, slip, load, _, temperature, mu = row.split(",")

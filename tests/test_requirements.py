@@ -34,7 +34,7 @@ def pinned() -> dict[str, str]:
 
 
 @pytest.mark.parametrize("text", WANTED)
-def test_what_the_project_asks_for_is_there_within_its_range(text: str) -> None:
+def test_every_required_package_is_there_within_its_range(text: str) -> None:
     wanted = Requirement(text)
     version = pinned().get(canonicalize_name(wanted.name))
     assert version is not None, f"{wanted.name} is missing: make the file anew, as its head says"
@@ -51,6 +51,6 @@ def test_no_registry_is_named() -> None:
     assert "://" not in TEXT and "index" not in "".join(ENTRIES)
 
 
-def test_the_file_and_the_readme_say_the_two_commands() -> None:
+def test_the_file_and_the_readme_state_both_commands() -> None:
     readme = (ROOT / "README.md").read_text(encoding="utf-8")
     assert all(command in TEXT and command in readme for command in COMMANDS)

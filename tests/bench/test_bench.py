@@ -58,7 +58,7 @@ def test_verdict_follows_from_runs_and_limit(runs: tuple[float, ...], limit: Lim
     assert Figure("a", "us", runs, limit).verdict is verdict
 
 
-def test_only_what_misses_its_limit_or_failed_counts_as_missed() -> None:
+def test_only_a_figure_beyond_its_limit_or_a_failure_counts_as_missed() -> None:
     assert [figure.missed for figure in (FAST, SLOW, PLAIN, ABSENT, BROKEN)] == [False, True, False, False, True]
 
 
@@ -86,7 +86,7 @@ def test_the_table_shows_every_figure_with_limit_and_verdict() -> None:
     assert lines[6].split() == ["scan", "nodes", "20", "20", "20", "us"]
 
 
-def test_the_table_ends_with_what_was_missed() -> None:
+def test_the_table_ends_with_the_missed_figures() -> None:
     assert table({"scan": [FAST, SLOW], "whole": [BROKEN]}, MACHINE).splitlines()[-3:] == [
         "missed, 2 of 3:",
         "  scan: control",
@@ -98,7 +98,7 @@ def test_the_table_ends_with_all_well_where_nothing_was_missed() -> None:
     assert table({"scan": [FAST, PLAIN]}, MACHINE).splitlines()[-1] == "all 1 figures with a limit hold"
 
 
-def test_what_a_machine_cannot_measure_is_a_line_of_its_own() -> None:
+def test_a_figure_that_a_machine_cannot_measure_has_its_own_line() -> None:
     line = table({"modbus": [ABSENT]}, MACHINE).splitlines()[4]
     assert line.split()[:6] == ["modbus", "pty", "-", "-", "-", "us"]
     assert line.endswith("not available here: this system has no pseudo-terminals")
@@ -119,7 +119,7 @@ def test_a_bar_in_a_note_does_not_end_its_cell() -> None:
     assert as_markdown({"a": [Figure("b", "us", (1.0,), note="c | d")]}, MACHINE).splitlines()[4].endswith("c \\| d |")
 
 
-def test_json_holds_the_machine_every_run_and_what_was_missed() -> None:
+def test_json_holds_the_machine_every_run_and_the_missed_figures() -> None:
     record = json.loads(as_json({"scan": [SLOW, ABSENT]}, MACHINE))
     assert record["machine"] == MACHINE
     assert record["missed"] == ["scan: control"]
@@ -133,7 +133,7 @@ def test_missed_names_topic_and_figure() -> None:
     assert missed({"scan": [FAST, SLOW], "pty": [ABSENT]}) == ["scan: control"]
 
 
-def test_the_machine_says_interpreter_and_whether_it_was_built_with_pgo() -> None:
+def test_the_machine_line_names_the_interpreter_and_whether_it_was_built_with_pgo() -> None:
     found = machine()
     assert str(found["interpreter"]).startswith(("CPython", "PyPy"))
     assert found["pgo"] in ("yes", "no", "unknown")
@@ -187,7 +187,7 @@ def test_figures_come_in_markdown_where_that_is_asked(
     assert "| model | drivers | 10 | 9 | 11 | us | <= 12 | ok |" in capsys.readouterr().out
 
 
-def test_a_topic_that_fails_leaves_a_line_and_the_others_go_on(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_topic_that_fails_leaves_a_line_and_the_others_continue(monkeypatch: pytest.MonkeyPatch) -> None:
     def fail(effort: Effort) -> list[Figure]:
         raise TopicFailedError("the run tripped")
 

@@ -64,7 +64,7 @@ def test_a_commit_that_does_not_exist_ends_with_its_name(capfd: pytest.CaptureFi
         bench(["ladder", "--against", "nothing-like-it", "--plain"])
 
 
-def test_the_sources_of_this_tree_are_what_git_lists(tmp_path: Path) -> None:
+def test_the_sources_of_this_tree_are_those_that_git_lists(tmp_path: Path) -> None:
     if not (ROOT / ".git").exists():
         pytest.skip("not a checkout")
     assert (sources(None, tmp_path) / "tester" / "cli" / "main.py").is_file()

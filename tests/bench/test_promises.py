@@ -146,7 +146,7 @@ def test_processor_time_and_memory_are_those_of_the_command(tmp_path: Path) -> N
     assert printed == "done\n" and used.memory_mb > 190.0 and 0.0 < used.user_s <= used.cpu_s
 
 
-def test_a_compiled_copy_is_known_by_what_is_installed(tmp_path: Path) -> None:
+def test_a_compiled_copy_is_recognised_by_its_installed_files(tmp_path: Path) -> None:
     (tmp_path / "tester").mkdir()
     (tmp_path / "tester" / "a.py").write_text("A = 1\n", encoding="utf-8")
     first = fingerprint(tmp_path)

@@ -49,5 +49,5 @@ def test_a_diagnosis_reads_as_one_line() -> None:
                               "communication, history 0x8130 heartbeat of the master lost; 0x2310 over-current")
 
 
-def test_an_unfinished_diagnosis_says_what_failed() -> None:
+def test_an_unfinished_diagnosis_names_the_failure() -> None:
     assert Diagnosis(0, 0, (), "no reply").text.endswith("history empty; no reply")

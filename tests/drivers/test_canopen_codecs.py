@@ -77,7 +77,7 @@ def test_an_emergency_frame_decodes() -> None:
     assert not emergency.is_reset
 
 
-def test_code_zero_says_that_the_error_has_gone() -> None:
+def test_code_zero_reports_that_the_error_has_gone() -> None:
     assert decode_emergency(bytes(8), t=0.0).is_reset
 
 

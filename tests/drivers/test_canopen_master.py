@@ -167,7 +167,7 @@ def test_two_tpdo1_in_one_feed_leave_the_newer() -> None:
 
 @pytest.mark.parametrize(("can_id", "data"), [(0x199, bytes(8)), (0x709, b"\x05"), (0x589, bytes(8)),
                                               (0x100, bytes(6)), (0x381, bytes(8)), (0x701, b"\x05\x00")])
-def test_frames_of_nobody_are_counted(can_id: int, data: bytes) -> None:
+def test_frames_without_an_owner_are_counted(can_id: int, data: bytes) -> None:
     master, _, _ = bus()
     master.feed([(0.0, can_id, data)], 0.0)
     assert (master.unknown_frames, master.foreign_master) == (1, False)
@@ -183,7 +183,7 @@ def test_frames_of_nobody_are_counted(can_id: int, data: bytes) -> None:
     (0x601, bytes.fromhex("40 00 10 00 00 00 00 00"), "SDO request 601#4000100000000000"),
     (0x77F, b"\x05", "heartbeat of our node id 77F#05"),
 ])
-def test_what_only_a_master_sends_reveals_another_one(can_id: int, data: bytes, name: str) -> None:
+def test_frames_that_only_a_master_sends_reveal_another_master(can_id: int, data: bytes, name: str) -> None:
     master, _, _ = bus()
     master.feed([(0.0, can_id, data)], 0.0)
     assert (master.foreign_master, master.foreign_frame) == (True, name)
@@ -203,7 +203,7 @@ def test_the_drives_own_frames_are_not_foreign() -> None:
 
 # --- drives' heartbeats -------------------------------------------------------------------------------------
 
-def test_a_silent_drive_is_lost_150_ms_after_its_last_heartbeat_and_the_deadline_says_when() -> None:
+def test_a_silent_drive_is_lost_at_the_deadline_150_ms_after_its_last_heartbeat() -> None:
     master, drive, belt = bus()
     port = Recorder()
     master.feed([(0.1, 0x701, b"\x05"), (0.1, 0x702, b"\x05")], 0.1)
@@ -286,7 +286,7 @@ def test_a_second_conversation_with_the_same_drive_is_refused() -> None:
         master.start(drive, drive.diagnose())
 
 
-def test_a_cancelled_conversation_says_no_more() -> None:
+def test_a_cancelled_conversation_sends_no_more_frames() -> None:
     master = CanMaster()
     drive = ServoDrive(wheel())
     master.add(drive)

@@ -48,7 +48,7 @@ def test_a_node_that_is_silent_is_asked_no_more_and_is_no_answer() -> None:
     assert not any(data[:4] == bytes.fromhex("40 18 10 01") for _, data in bus.sent)
 
 
-def test_a_missing_object_is_told_and_the_next_is_asked() -> None:
+def test_a_missing_object_is_reported_and_the_next_is_asked() -> None:
     bus, scan = Bus(), SdoScan({1: [(0x6076, 0), (0x1000, 0)]})
     scan.service(bus, 0.0)
     scan.feed([(0.001, 0x581, NO_OBJECT)], bus, 0.001)

@@ -101,7 +101,7 @@ def test_a_broken_sensor_is_no_reading_and_ends_the_heat() -> None:
 
 
 @pytest.mark.parametrize("air_c", [106.0, -56.0])
-def test_beyond_its_own_limits_the_chamber_stands_by_and_says_so(air_c: float) -> None:
+def test_beyond_its_own_limits_the_chamber_stands_by_and_reports_it(air_c: float) -> None:
     made, chamber, slave, air = rig()
     made.run(3.0, Command(chamber, 60.0))
     air.air_c = air_c

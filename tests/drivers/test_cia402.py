@@ -27,7 +27,7 @@ def printed_state(word: int) -> State:
     return State.NOT_READY
 
 
-def test_every_statusword_decodes_as_the_printed_table_says() -> None:
+def test_every_statusword_decodes_as_in_the_printed_table() -> None:
     wrong = [word for word in range(0x10000) if decode(word) is not printed_state(word)]
     assert wrong == []
 

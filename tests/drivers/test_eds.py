@@ -14,7 +14,7 @@ def imported() -> canopen.ObjectDictionary:
     return canopen.import_od(str(EDS_PATH), node_id=5)
 
 
-def test_the_file_is_what_the_dictionary_gives() -> None:
+def test_the_file_matches_the_dictionary() -> None:
     assert EDS_PATH.read_text(encoding="ascii") == write_eds(DICTIONARY)
 
 

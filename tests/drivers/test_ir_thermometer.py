@@ -106,7 +106,7 @@ def test_a_thermometer_takes_no_tare() -> None:
         Sensor(PROFILE, 2, Bench().link).set_tare((0.0, 0.0, 0.0))
 
 
-def test_only_the_channels_asked_for_tell_of_a_change() -> None:
+def test_only_the_requested_channels_count_as_a_change() -> None:
     bench = Bench(baud=38400)
     thermometer = Sensor(PROFILE, 2, bench.link, ("surface",))
     bench.serve(0.0)

@@ -45,7 +45,7 @@ class Build:
             self.answer(at_s + place * step_s, {1: 10.0, 2: 1.0, 3: 20.0}[unit_id])
 
 
-def test_the_transmitters_are_read_in_turn_between_scans_too() -> None:
+def test_the_transmitters_are_also_read_in_turn_between_scans() -> None:
     build = Build()
     asked = [build.answer(0.006 * number, 1.0) for number in range(1, 8)]
     assert asked == [1, 2, 3, 1, 2, 3, 1]
@@ -87,7 +87,7 @@ def test_a_transmitter_that_falls_silent_is_named_and_the_reading_gets_old() -> 
     assert build.cell.blame(ORIGIN_S + now, 0.05).startswith("cell fy: no reading for 1")
 
 
-def test_one_that_says_that_it_is_broken_makes_the_cell_invalid() -> None:
+def test_a_transmitter_that_reports_a_fault_makes_the_cell_invalid() -> None:
     build = Build()
     build.round(0.006)
     build.answer(0.024, 10.0)
@@ -106,7 +106,7 @@ def test_the_zero_is_taken_off_every_channel() -> None:
     assert build.cell.raw[:3] == pytest.approx([10 * KG_N, KG_N, 20 * KG_N])
 
 
-def test_what_bears_a_force_and_repeats_itself_dates_the_last_change() -> None:
+def test_the_repeated_reading_of_a_loaded_channel_dates_the_last_change() -> None:
     build = Build()
     for number in range(4):
         for _ in range(3):

@@ -35,7 +35,7 @@ def writing(*, values: tuple[int, ...] = (1,)) -> tuple[Bench, Request]:
     return bench, request
 
 
-def test_a_reply_behind_its_own_request_shows_an_adapter_that_hears_itself() -> None:
+def test_a_reply_behind_its_own_request_shows_an_adapter_with_echo() -> None:
     bench, request = reading()
     bench.serve(0.02, (0.01, READ + reply(1, 2)))
     assert bench.link.ear.hears_itself is True
@@ -129,7 +129,7 @@ def test_a_disturbed_echo_confirms_nothing() -> None:
     assert request.station.counters.garbage == 1
 
 
-def test_an_adapter_that_begins_to_hear_itself_is_noticed_at_the_next_read() -> None:
+def test_an_adapter_that_starts_to_echo_is_noticed_at_the_next_read() -> None:
     bench, read = reading()
     bench.serve(0.02, (0.01, reply(1, 2)), scan=False)
     bench.serve(1.1)

@@ -65,7 +65,7 @@ def test_a_frame_is_found_behind_noise() -> None:
     assert (used, unit_id, pdu) == (len(frame) + 2, 1, bytes.fromhex("03020001"))
 
 
-def test_what_follows_a_frame_is_left() -> None:
+def test_bytes_behind_a_frame_are_left() -> None:
     frame = with_crc(bytes.fromhex("0103020001"))
     used, *_ = codec.next_frame("rtu", frame + b"\x01\x03")
     assert used == len(frame)
@@ -93,7 +93,7 @@ def test_a_frame_with_a_bad_crc_has_no_pdu() -> None:
         ("0302", DecodedAnswer.OTHER),
     ],
 )
-def test_replies_to_a_read_of_one_register_are_told_apart(pdu: str, answer: DecodedAnswer) -> None:
+def test_replies_to_a_read_of_one_register_are_distinguished(pdu: str, answer: DecodedAnswer) -> None:
     assert codec.classify(bytes.fromhex(pdu[: len(pdu) & ~1]), 3, 0, (), 1) is answer
 
 
@@ -116,7 +116,7 @@ def test_every_code_we_act_on_has_a_text() -> None:
 
 
 @given(st.lists(st.integers(min_value=0, max_value=0xFFFF), min_size=1, max_size=125))
-def test_the_links_short_way_gives_what_pymodbus_decodes(registers: list[int]) -> None:
+def test_the_links_fast_decoder_agrees_with_pymodbus(registers: list[int]) -> None:
     bench = Bench()
     bench.link.enable(bench.link.read(bench.station(), 3, 0, len(registers), 0.0))
     bench.serve(0.0)

@@ -108,14 +108,14 @@ def test_a_tcp_reply_in_pieces_is_put_together() -> None:
     assert bench.line.renewed == []
 
 
-def test_what_comes_with_a_doubt_is_not_looked_at() -> None:
+def test_doubtful_bytes_are_not_decoded() -> None:
     bench, _ = asked_over_tcp()
     good = bytes.fromhex("0001000000050103020001")
     bench.serve(0.01, (0.005, b"\xff"), (0.006, good))
     assert bench.notes.replies == []
 
 
-def test_bytes_over_tcp_that_nobody_asked_for_drop_the_connection() -> None:
+def test_unrequested_bytes_over_tcp_drop_the_connection() -> None:
     bench, _ = asked_over_tcp()
     good = bytes.fromhex("0001000000050103020001")
     bench.serve(0.01, (0.005, good), (0.006, good), scan=False)
@@ -162,7 +162,7 @@ def test_no_single_wrong_bit_gets_through(bit: int) -> None:
 
 
 @given(st.binary(max_size=300))
-def test_any_garbage_leaves_the_link_able_to_go_on(garbage: bytes) -> None:
+def test_after_any_garbage_the_link_can_continue(garbage: bytes) -> None:
     bench, _ = polling()
     bench.link.feed([(0.002, garbage)], 0.01)
     now = 0.01
@@ -204,7 +204,7 @@ def test_nothing_at_all_is_not_a_reply() -> None:
     assert bench.notes.replies == []
 
 
-def test_bytes_that_nobody_asked_for_are_counted() -> None:
+def test_unrequested_bytes_are_counted() -> None:
     bench = Bench()
     bench.link.enable(bench.link.read(bench.station(), 3, 0, 9, 0.0))
     bench.serve(0.0, (-0.1, b"\x55"))
@@ -402,7 +402,7 @@ def three_devices_in_trouble(sparing: bool, period_s: float) -> Rig:
 
 
 @pytest.mark.parametrize("period_s", [0.01, 0.05])
-def test_whoever_serves_the_link_only_when_it_wants_to_sends_the_same_frames(period_s: float) -> None:
+def test_serving_the_link_only_on_request_sends_the_same_frames(period_s: float) -> None:
     always, sparing = (three_devices_in_trouble(mode, period_s) for mode in (False, True))
     assert len(always.log.frames) > 400
     frames, expected = ([(round(t, 9), *what) for t, *what in rig.log.frames] for rig in (sparing, always))

@@ -232,7 +232,7 @@ def test_a_write_is_renewed() -> None:
     assert bench.times == [0.0, 0.5, 1.0]
 
 
-def test_an_urgent_write_goes_before_what_waited_longer() -> None:
+def test_an_urgent_write_goes_before_requests_that_waited_longer() -> None:
     bench = Bench()
     station = bench.station()
     bench.link.enable(bench.link.read(station, 3, 0, 9, 1.0), 0.0)

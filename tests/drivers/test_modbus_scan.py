@@ -84,7 +84,7 @@ def test_silence_ends_a_question() -> None:
     ],
     ids=["a wrong CRC", "another unit", "another length"],
 )
-def test_what_is_no_answer_is_noise(data: bytes) -> None:
+def test_bytes_that_are_no_answer_are_noise(data: bytes) -> None:
     line, scan = asked()
     scan.feed([(0.02, data)], 0.02)
     scan.service(line, 0.2)
@@ -104,7 +104,7 @@ def test_an_answer_to_an_earlier_question_is_not_taken_for_this_ones() -> None:
     assert len(line.sent) == 2
 
 
-def test_over_tcp_the_transaction_number_tells_the_answer() -> None:
+def test_over_tcp_the_transaction_number_identifies_the_answer() -> None:
     line, scan = Line(), LineScan("socket", 9600, "N")
     scan.ask(QUESTION, 0.1)
     scan.service(line, 0.0)
@@ -117,7 +117,7 @@ def test_over_tcp_the_transaction_number_tells_the_answer() -> None:
 
 
 @pytest.mark.parametrize("size", range(1, 9))
-def test_the_echo_of_an_adapter_that_hears_itself_is_removed_in_any_pieces(size: int) -> None:
+def test_the_echo_of_an_adapter_is_removed_in_any_pieces(size: int) -> None:
     _, scan = asked()
     echo_and_answer = REQUEST + GOOD
     for at in range(0, len(echo_and_answer), size):

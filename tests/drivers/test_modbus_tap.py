@@ -23,7 +23,7 @@ TALK = [
 
 
 @pytest.mark.parametrize("seed", range(20))
-def test_frames_are_told_apart_however_they_come(seed: int) -> None:
+def test_frames_are_separated_in_any_pieces(seed: int) -> None:
     pieces = random.Random(seed)
     stream = b"".join(frame for frame, _ in TALK)
     tap, found = LineTap(), []

@@ -144,7 +144,7 @@ def test_a_number_that_guards_a_channel_is_none_and_its_bounds_make_the_channel_
     assert (both.valid, first.valid) == (False, True)
 
 
-def test_what_was_set_up_is_read_again_after_a_reply_that_did_not_come() -> None:
+def test_the_set_up_is_read_again_after_a_missing_reply() -> None:
     writes = '[writes]\ngain = { address = 30, type = "u16", default = 7 }\n'
     found = profile(TWO_READS + writes)
     slave = SensorSlave(found, 1)
@@ -166,7 +166,7 @@ def test_what_was_set_up_is_read_again_after_a_reply_that_did_not_come() -> None
 
 
 @pytest.mark.parametrize("guarded", ["third_ma", "second_state", "status"])
-def test_what_guards_no_channel_is_refused(guarded: str) -> None:
+def test_a_guard_without_a_channel_is_refused(guarded: str) -> None:
     with pytest.raises(ProfileError, match=f"second_state guards '{guarded}', which is no channel"):
         profile(GUARDED.replace('guards = "second_ma"', f'guards = "{guarded}"'))
 
@@ -222,7 +222,7 @@ def test_without_a_switch_a_setpoint_without_heat_takes_its_place() -> None:
     assert slave.setpoint_c == 5.0 and not slave.running and jacket.setpoint_c == 5.0
 
 
-def test_after_a_loss_it_stands_by_and_then_follows_what_is_wanted() -> None:
+def test_after_a_loss_it_stands_by_and_then_follows_the_commands() -> None:
     made, jacket, slave, _ = controller("standby_c = 5.0")
     for celsius in (60.0, 70.0):
         made.run(1.0, lambda celsius=celsius: (jacket.enable(True), jacket.set_setpoint(celsius)))

@@ -33,7 +33,7 @@ def test_the_hygrometer_s_own_example_is_read(registers: tuple[int, int], degc: 
 
 
 @pytest.mark.parametrize("registers", [(0x0131, 1001), (601, 0x0222), (0x8000, 0)])
-def test_what_the_hygrometer_cannot_measure_is_not_believed(registers: tuple[int, int]) -> None:
+def test_values_that_the_hygrometer_cannot_measure_are_invalid(registers: tuple[int, int]) -> None:
     assert not first_reading("hygrometer_sht20", *registers, function=4)[1].valid
 
 
@@ -46,7 +46,7 @@ def test_the_torque_transducer_has_both_signs_and_a_tare() -> None:
 
 
 @pytest.mark.parametrize("bit", [4, 5, 6])
-def test_a_torque_beyond_its_range_is_not_believed(bit: int) -> None:
+def test_a_torque_beyond_its_range_is_invalid(bit: int) -> None:
     assert not first_reading("torque_dat_400", 1 << bit, 0, 100)[1].valid
 
 

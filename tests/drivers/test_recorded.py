@@ -39,7 +39,7 @@ class Replay:
             self.connector.tick(t)
 
 
-def test_the_drivers_ask_what_they_asked_then_and_believe_the_answers() -> None:
+def test_the_drivers_repeat_the_recorded_requests_and_accept_the_answers() -> None:
     replay = Replay()
     replay.until(Stage.HEAR, 3.0)
     assert (replay.connector.stage, replay.connector.failure) == (Stage.HEAR, "")
@@ -47,7 +47,7 @@ def test_the_drivers_ask_what_they_asked_then_and_believe_the_answers() -> None:
     assert {name: line.unknown for name, line in replay.lines.items()} == {"load_cell": [], "heat": []}
 
 
-def test_a_drive_that_was_another_one_is_refused(tmp_path: Path) -> None:
+def test_a_record_of_another_drive_is_refused(tmp_path: Path) -> None:
     text = (RECORD / "can.log").read_text(encoding="utf-8")
     vendor = "581#43181001" + load_rig("sim").drives()["wheel"].vendor_id.to_bytes(4, "little").hex().upper()
     assert vendor in text
@@ -59,7 +59,7 @@ def test_a_drive_that_was_another_one_is_refused(tmp_path: Path) -> None:
     assert "0x1018:01" in replay.connector.failure
 
 
-def test_a_request_that_was_not_made_then_is_noted() -> None:
+def test_an_unrecorded_request_is_noted() -> None:
     line = RecordedLine(RECORD / "modbus-heat.log")
     line.write(b"\x07\x03", 1.0)
     assert (line.unknown, line.read(9.0)) == ([b"\x07\x03"], [])
@@ -68,7 +68,7 @@ def test_a_request_that_was_not_made_then_is_noted() -> None:
     assert bus.unknown == [(0x601, bytes(8))]
 
 
-def test_what_nobody_asked_for_comes_when_it_came() -> None:
+def test_unrequested_frames_come_at_their_recorded_times() -> None:
     bus = RecordedCan(RECORD / "can.log")
     assert bus.receive(0.1) == []
     assert [can_id for _, can_id, _ in bus.receive(0.3)] == [0x701, 0x702, 0x703, 0x704, 0x705]

@@ -46,7 +46,7 @@ def test_no_reply_is_waited_for_longer_than_before_measuring() -> None:
     assert request.timeout_s == pytest.approx(request.wire_s + UNMEASURED_S + RTU_MARGIN_S)
 
 
-def test_a_profile_that_says_longer_is_believed() -> None:
+def test_a_longer_time_in_a_profile_is_used() -> None:
     assert ReplyTimes().limit_s(Timing(0.1, 0.3)) == 0.3
 
 

@@ -35,7 +35,7 @@ def test_an_expedited_upload_without_size_has_four_bytes() -> None:
     ("01 02 03", "27 60 60 00 01 02 03 00"),
     ("C8 00 7F 00", "23 60 60 00 C8 00 7F 00"),
 ])
-def test_an_expedited_download_says_its_size(data: str, request_frame: str) -> None:
+def test_an_expedited_download_states_its_size(data: str, request_frame: str) -> None:
     client = SdoClient()
     assert client.download(0x6060, 0, frame(data), now=0.0) == frame(request_frame)
     assert client.feed(frame("60 60 60 00 00 00 00 00"), now=0.001) is None
@@ -70,7 +70,7 @@ def test_an_abort_ends_the_transfer_with_its_meaning() -> None:
     assert not client.busy
 
 
-def test_the_two_refusals_of_a_drive_in_the_wrong_state_say_so() -> None:
+def test_both_refusals_of_a_drive_in_the_wrong_state_name_it() -> None:
     assert "refused in this state" in abort_text(0x06090030)
     assert "refused in the present device state" in abort_text(0x08000022)
 

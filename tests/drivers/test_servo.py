@@ -47,7 +47,7 @@ def enabled_yaw(raw: int = 0) -> ServoDrive:
 
 # --- readings -----------------------------------------------------------------------------------------------
 
-def test_a_drive_nobody_spoke_to_has_no_readings() -> None:
+def test_an_unconnected_drive_has_no_readings() -> None:
     drive = ServoDrive(wheel())
     assert math.isnan(drive.actual)
     assert math.isnan(drive.torque_nm)
@@ -103,7 +103,7 @@ def test_only_a_change_of_state_or_of_remote_is_news(bit: int, news: bool) -> No
     assert (drive.statusword, drive.news, drive.dirty) == (ENABLED ^ bit, news, True)
 
 
-def test_a_statusword_that_comes_by_itself_says_that_the_axis_stands() -> None:
+def test_an_unrequested_statusword_reports_standstill() -> None:
     drive = joined(wheel(speed_zero=0.2))
     report(drive, ENABLED, value=5800)
     assert drive.actual != 0.0 and not drive.stands
@@ -111,7 +111,7 @@ def test_a_statusword_that_comes_by_itself_says_that_the_axis_stands() -> None:
     assert (drive.stands, drive.actual, drive.stamp_s, drive.news) == (True, 0.0, 2.0, True)
 
 
-def test_a_statusword_that_comes_by_itself_leaves_a_speed_alone_that_is_not_zero() -> None:
+def test_an_unrequested_statusword_keeps_a_speed_other_than_zero() -> None:
     drive = joined(wheel(speed_zero=0.2))
     report(drive, ENABLED, value=5800)
     before = (drive.actual, drive.stamp_s)

@@ -124,7 +124,7 @@ def test_the_rpdo_deadline_is_set_where_configured() -> None:
     assert (0x1400, 5, 250) in bench.writes
 
 
-def test_who_answered_is_kept() -> None:
+def test_the_identity_of_the_drive_is_kept() -> None:
     _, drive, _ = connect(BenchDrive())
     assert drive.identity is not None
     assert (drive.identity.vendor_id, drive.identity.product_code, drive.identity.serial_number) == (
@@ -405,7 +405,7 @@ def test_a_diagnosis_reads_code_register_and_history_and_writes_nothing() -> Non
     assert len(bench.writes) == before
 
 
-def test_a_diagnosis_of_a_silent_drive_says_so() -> None:
+def test_a_diagnosis_of_a_silent_drive_reports_the_silence() -> None:
     bench = BenchDrive()
     master, drive, now = connect(bench)
     bench.answers = False

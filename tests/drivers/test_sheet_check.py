@@ -29,7 +29,7 @@ def own() -> DataSheet:
     return read_data_sheet(EDS_PATH, 5)
 
 
-def test_a_sheet_says_type_access_default_and_mapping(own: DataSheet) -> None:
+def test_a_sheet_states_type_access_default_and_mapping(own: DataSheet) -> None:
     entry = own.objects[0x1800, 1]
     assert (entry.type, entry.access, entry.default) == (7, "rw", 0x40000185)
     assert (entry.writable, entry.mappable) == (True, False)
@@ -76,24 +76,24 @@ def test_our_own_sheet_is_fit_for_every_axis(own: DataSheet) -> None:
     ((0x6502, 0), {"default": 1}, "0x6502:00 (supported drive modes (pp, pv, hm)): 0x00000001, without PROFILE_VELO"),
     ((0x1016, 1), {"access": "ro"}, "0x1016:01 (consumer heartbeat (node << 16 | ms)): it cannot be written"),
 ])
-def test_what_does_not_fit_is_named(own: DataSheet, key: tuple[int, int], values: dict[str, object], said: str) -> None:
+def test_a_mismatch_is_named(own: DataSheet, key: tuple[int, int], values: dict[str, object], said: str) -> None:
     refused = check_sheet(wheel(), changed(own, key, **values)).refused
     assert len(refused) == 1 and refused[0].startswith(said)
 
 
-def test_everything_that_does_not_fit_is_named_at_once(own: DataSheet) -> None:
+def test_all_mismatches_are_named_at_once(own: DataSheet) -> None:
     sheet = changed(changed(changed(own, (0x6085, 0)), (0x605D, 0)), (0x6072, 0))
     assert [one[:9] for one in check_sheet(wheel(), sheet).refused] == ["0x605D:00", "0x6085:00", "0x6072:00"]
 
 
-def test_an_epos4_is_fit_for_a_press_with_what_it_lacks_named() -> None:
+def test_an_epos4_suits_a_press_and_its_missing_objects_are_named() -> None:
     sheet = read_data_sheet(SHEETS / "maxon_epos4.eds")
     verdict = check_sheet(wheel(digital_io=True, profile="maxon_epos4", vendor_id=0xFB, product_code=0), sheet)
     assert verdict.refused == ()
     assert [one.split(" ")[1] for one in verdict.without] == ["0x605D:00", "0x60FE:02", "0x1801:05"]
 
 
-def test_a_current_above_what_an_epos4_gives_is_refused() -> None:
+def test_a_current_above_the_limit_of_an_epos4_is_refused() -> None:
     sheet = read_data_sheet(SHEETS / "maxon_epos4.eds")
     config = wheel(profile="maxon_epos4", vendor_id=0, product_code=0, max_torque_per_mille=4000)
     assert check_sheet(config, sheet).refused == (

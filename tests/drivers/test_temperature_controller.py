@@ -88,7 +88,7 @@ def test_a_controller_without_the_watchdog_register_is_refused_with_the_address(
     assert jacket.refused == "exception 2 (illegal data address) on writing 1 register from address 5000"
 
 
-def test_a_profile_without_lease_says_so() -> None:
+def test_a_profile_without_lease_reports_it() -> None:
     assert not TemperatureController("jacket", load_profile("omron_e5cc"), 1, Bench().link).has_lease
     assert TemperatureController("jacket", PROFILE, 1, Bench().link).has_lease
 
@@ -323,7 +323,7 @@ def test_without_a_lease_the_setpoint_that_it_falls_back_to_is_set_and_read_back
     assert (jacket.has_lease, jacket.ends_s) == (False, 5.0)
 
 
-def test_one_that_keeps_another_setpoint_to_fall_back_to_is_refused() -> None:
+def test_a_controller_that_keeps_another_fallback_setpoint_is_refused() -> None:
     bench = Bench(baud=38400)
     jacket = TemperatureController("jacket", REAL, 1, bench.link)
     bench.serve(0.0)
@@ -332,7 +332,7 @@ def test_one_that_keeps_another_setpoint_to_fall_back_to_is_refused() -> None:
     assert jacket.refused == "setpoint 1, to which it falls back: register holds 800, expected 0"
 
 
-def test_without_setpoints_the_real_controller_heats_no_more_after_5_s_and_says_so() -> None:
+def test_without_setpoints_the_real_controller_stops_heating_after_5_s_and_reports_it() -> None:
     source = Quantities()
     slave = ControllerSlave(REAL, 1, source)
     made = Rig(38400, slave)

@@ -57,14 +57,14 @@ def test_a_person_was_asked_for_it_once_and_the_wheel_was_warmed_again(folder: P
     assert asked == ["the belt is to be wet"] and len(heated) == 2
 
 
-def test_the_record_says_it_without_the_kind_and_is_verified(folder: Path) -> None:
+def test_the_record_states_the_axis_without_the_kind_and_is_verified(folder: Path) -> None:
     assert invoke(["verify", str(run_of(folder))]) == 0
     with closing(RunReader(run_of(folder))) as reader:
         assert [str(one.info.setpoint.value("interface")) for one in reader.conditions()] == ["dry", "wet"]
         assert reader.axes()["interface"].choices == ("dry", "wet")
 
 
-def test_a_plan_tells_it_in_words_and_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_plan_shows_the_axis_in_words_and_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", "wet.yaml", "--rig", "my-rig.yaml"]) == 0
     assert "wet, 300 mm/s, 200 N" in capsys.readouterr().out
     assert invoke(["plan", "wet.yaml", "--rig", "my-rig.yaml", "--json"]) == 0
@@ -75,7 +75,7 @@ def test_a_plan_tells_it_in_words_and_as_json(folder: Path, capsys: pytest.Captu
     assert found == [("dry", 200, 40), ("wet", 200, 40)]
 
 
-def test_what_the_wheel_holds_is_found_beside_it(folder: Path) -> None:
+def test_a_further_axis_leaves_the_hold_of_the_wheel_unchanged(folder: Path) -> None:
     recipe = find("lab_water:KIND").recipe
     assert recipe is not None
     values = {"slip_velocity": 0.3, "load": 200.0, "sideslip": 7.0, "temperature": 40.0}

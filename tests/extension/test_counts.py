@@ -18,7 +18,7 @@ def test_no_further_file_names_an_axis_or_a_channel(count: Count) -> None:
     assert len(found) <= NOW[count.name], found
 
 
-def test_the_count_prints_the_files_and_says_by_its_code_whether_it_is_met(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_count_prints_the_files_and_its_exit_code_is_the_verdict(capsys: pytest.CaptureFixture[str]) -> None:
     code = main()
     told = capsys.readouterr().out
     inside = all(len(files_naming(count.name)) <= count.at_most for count in COUNTS)

@@ -70,7 +70,7 @@ def test_an_unknown_name_names_those_there_are() -> None:
         drive_profile("nonsense")
 
 
-def test_one_that_is_not_allowed_is_a_problem_of_the_rig_file(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_package_that_is_not_allowed_is_a_problem_of_the_rig_file(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv(ALLOW_VARIABLE, "")
     plugins.cache_clear()
     with pytest.raises(InvalidSource, match=r"lab_drive.* is not allowed here .*--allow lab_drive"):
@@ -90,7 +90,7 @@ def test_a_file_beside_the_rig_file_is_found_from_anywhere(folder: Path, monkeyp
     assert load_rig("rig.yaml").drives()["belt"].profile == str(place / "own.toml")
 
 
-def test_a_sensors_file_beside_the_rig_file_is_found_too(folder: Path) -> None:
+def test_a_sensors_file_beside_the_rig_file_is_also_found(folder: Path) -> None:
     place = folder / "rigs"
     place.mkdir()
     text = packaged_text().replace("profile: simulated_jacket", "profile: jacket.toml")

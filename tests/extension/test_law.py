@@ -43,7 +43,7 @@ def test_it_is_predicted_with(capfd: pytest.CaptureFixture[str]) -> None:
     assert json.loads(capfd.readouterr().out)["mu"] == pytest.approx(MU_200_N)
 
 
-def test_what_a_condition_may_ask_for_is_worked_out_with_it(capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_plan_is_computed_with_the_law(capfd: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", "short.yaml", "--set", LAW]) == 0
     own = capfd.readouterr().out
     assert invoke(["plan", "short.yaml"]) == 0

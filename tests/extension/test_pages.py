@@ -43,7 +43,7 @@ def test_the_package_of_a_profile_is_that_of_the_example(name: str, example: str
     assert said["pyproject.toml"] == (EXAMPLES / example / "pyproject.toml").read_text(encoding="utf-8")
 
 
-def test_the_part_of_the_rig_file_is_what_the_example_sets() -> None:
+def test_the_part_of_the_rig_file_matches_the_example() -> None:
     part = PART.search(page("add-a-law"))
     assert part is not None
     law = yaml.safe_load(part["text"])["sim"]["friction_model"]

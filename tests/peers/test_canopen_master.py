@@ -194,7 +194,7 @@ def test_the_ramp_is_seen_on_the_wire(master: Master) -> None:
     assert (v1 - v0) / (t1 - t0) == pytest.approx(10_000, rel=0.02)
 
 
-def test_a_lost_heartbeat_stops_the_drive_and_says_so(master: Master) -> None:
+def test_a_lost_heartbeat_stops_the_drive_and_is_reported(master: Master) -> None:
     ready(master)
     master.node.sdo[0x1016][1].raw = PC << 16 | 200
     for _ in range(20):

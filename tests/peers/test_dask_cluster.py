@@ -36,7 +36,7 @@ def test_a_cluster_gives_the_tables_that_this_machine_gives(tmp_path: Path, caps
     assert b"done" in there["runs.csv"] and b"not run" not in there["runs.csv"]
 
 
-def test_no_scheduler_at_the_address_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_scheduler_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     import_module("distributed")
     dask = import_module("dask")
     with dask.config.set({"distributed.comm.timeouts.connect": "1s"}):

@@ -111,7 +111,7 @@ def test_minimalmodbus_understands_the_exceptions(connect: Callable[..., Termina
         device.write_register(199, 7, functioncode=6)
 
 
-def test_minimalmodbus_hears_nothing_from_an_absent_address(connect: Callable[..., Terminal]) -> None:
+def test_minimalmodbus_gets_no_reply_from_an_absent_address(connect: Callable[..., Terminal]) -> None:
     terminal = connect(CellSlave(load_profile("four_axis_transmitter"), 1, Quantities()))
     device = instrument(terminal, 9)
     device.serial.timeout = 0.1

@@ -55,7 +55,7 @@ def test_the_last_answer_to_a_sync_counts(bus_log: Path) -> None:
     assert second.first_s - first.answered_s < GUARD_S
 
 
-def test_only_what_was_taken_while_sliding_under_load_counts() -> None:
+def test_only_samples_taken_while_sliding_under_load_count() -> None:
     rows = [row(0.0), row(0.01, force=0.0), row(0.02, belt=0.8), row(0.03)]
     counts = Counting(rows, 0.0, 0.05)
     assert [counts(t) for t in (-0.01, 0.005, 0.015, 0.025, 0.04, 0.06)] == [False, True, False, False, True, False]
@@ -76,7 +76,7 @@ def test_the_aftermath_is_read_from_the_moment_of_the_kill() -> None:
 
 
 @pytest.mark.parametrize("last", [{"wheel": 0.8, "heat": 0.0}, {"wheel": 0.0, "belt": 0.0, "heat": 5.0}])
-def test_a_rig_that_goes_on_or_starts_again_is_never_in_time(last: dict[str, float]) -> None:
+def test_a_rig_that_keeps_moving_or_starts_again_is_never_in_time(last: dict[str, float]) -> None:
     rows = [row(0.0), row(0.1, wheel=0.0, belt=0.0, heat=0.0), row(3.5, **last)]
     found = aftermath(rows, 1000.05, 5.0)
     assert not (found.stopped_in_time and found.cold_in_time)

@@ -29,7 +29,7 @@ COMPOUNDS = [one.name for one in LIBRARY.entries("compound")]
 SURFACE_FILES = [one.name for one in LIBRARY.entries("surface")]
 
 
-def test_what_ships() -> None:
+def test_the_packaged_materials() -> None:
     assert sorted(COMPOUNDS) == ["1#", "2#", "3#", "ABR", "INR", "NBR", "NR", "SBR", "butyl", "tread", "tread soft"]
     assert sorted(SURFACE_FILES) == [
         "S0", "anti-slip tape", "asphalt", "concrete", "glass", "granite", "polished steel", "road", "silicon carbide",
@@ -97,7 +97,7 @@ def test_a_surface_has_the_roughness_and_the_slope_that_its_file_states(
 
 
 @pytest.mark.parametrize("name", [name for name in COMPOUNDS if not name.endswith("#")])
-def test_an_invented_compound_says_so(name: str) -> None:
+def test_an_invented_compound_is_marked_as_such(name: str) -> None:
     assert "[A]" in (LIBRARY.compound(name).model.source or "")
 
 
@@ -186,7 +186,7 @@ def test_surfaces_of_the_simulated_track_have_a_file(name: str) -> None:
     assert LIBRARY.path("surface", name) is not None
 
 
-def test_recipes_find_what_they_name() -> None:
+def test_recipes_find_their_materials() -> None:
     for path in recipes.FOLDER.glob("*.yaml"):
         recipe = yaml.safe_load(path.read_text(encoding="utf-8"))
         for specimen in recipe["specimens"]:
@@ -228,7 +228,7 @@ def test_the_tread_at_100_hz_is_that_of_16_k_less_at_1_hz() -> None:
     assert fast == pytest.approx(cold, rel=1e-9)
 
 
-def test_grit_and_road_have_the_lengths_they_say() -> None:
+def test_grit_and_road_have_their_stated_lengths() -> None:
     grit = LIBRARY.surface("silicon carbide").spectrum
     assert grit is not None
     assert 2.0 * pi / grit.band_1_m[0] == pytest.approx(150e-6, rel=1e-6)

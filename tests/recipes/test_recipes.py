@@ -39,7 +39,7 @@ def test_a_file_comes_before_a_packaged_recipe_of_that_name(tmp_path: Path, monk
 
 
 @pytest.mark.parametrize("name", ["nosuch", "elsewhere/quickstart.yaml", "quickstart.txt", "../quickstart", "."])
-def test_what_is_neither_file_nor_name_is_refused_naming_what_there_is(
+def test_a_recipe_that_is_neither_file_nor_name_is_refused_with_the_known_names(
     name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -79,7 +79,7 @@ def test_the_loads_of_the_pressures_are_weights() -> None:
     assert {held_by(step.setpoint).load_n for step in plan.conditions()} == {10.0, 25.0, 40.0, 55.0, 70.0}
 
 
-def test_the_packaged_schema_is_what_tester_schema_prints() -> None:
+def test_the_packaged_schema_matches_the_output_of_tester_schema() -> None:
     stored = (recipes.FOLDER / "recipe.schema.json").read_text(encoding="utf-8")
     assert stored == editor_text(PART.model()), "write it again: tester schema > recipes/recipe.schema.json"
 

@@ -251,7 +251,7 @@ def test_the_device_name_is_uploaded_in_segments(bench: DriveBench) -> None:
     ("index", "sub", "code"),
     [(0x1234, 0, 0x06020000), (0x6042, 0, 0x06020000), (0x1018, 9, 0x06090011), (0x6041, 1, 0x06090011)],
 )
-def test_a_missing_object_or_sub_index_is_told_apart(
+def test_a_missing_object_and_a_missing_sub_index_have_different_aborts(
     bench: DriveBench, index: int, sub: int, code: int
 ) -> None:
     assert bench.refused_read(index, sub) == code

@@ -116,7 +116,7 @@ def test_target_reached_is_set_at_the_end_of_the_ramp_only() -> None:
     assert bench.statusword & REACHED
 
 
-def test_speed_zero_tells_standing_from_turning() -> None:
+def test_speed_zero_separates_standstill_from_turning() -> None:
     bench = DriveBench().enabled()
     bench.run(0.1)
     assert bench.statusword & ZERO
@@ -159,7 +159,7 @@ def test_halt_ramps_down_and_reports_the_standstill() -> None:
     assert bench.statusword & REACHED
 
 
-def test_the_end_of_halt_goes_on_to_the_target() -> None:
+def test_after_halt_the_drive_continues_to_the_target() -> None:
     bench = turning()
     bench.cycle(0x10F, 10_000)
     bench.run(2.0)
@@ -441,7 +441,7 @@ def test_a_persistent_cause_refuses_the_reset() -> None:
     assert bench.state == DISABLED
 
 
-def test_a_second_fault_during_the_reaction_is_reported_too() -> None:
+def test_a_second_fault_during_the_reaction_is_also_reported() -> None:
     bench = turning()
     bench.drive.fault(0x7121)
     bench.drive.fault(0x4310)

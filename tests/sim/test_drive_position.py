@@ -118,7 +118,7 @@ def test_a_target_beyond_the_software_limit_ends_at_it() -> None:
     assert bench.statusword & LIMIT
 
 
-def test_halt_pauses_a_move_and_its_end_goes_on() -> None:
+def test_halt_pauses_a_move_which_then_continues() -> None:
     bench = yaw()
     go(bench, 2000)
     bench.run(0.5)

@@ -54,7 +54,7 @@ def test_the_generic_profile_does_without_nothing() -> None:
     assert [drive.plan.without for drive in Bus(axes("cia402")).connect().drives] == [[], [], []]
 
 
-def test_an_epos4_says_what_it_is_done_without() -> None:
+def test_an_epos4_reports_the_objects_it_lacks() -> None:
     wheel, press, _ = Bus(axes("maxon_epos4")).connect().drives
     told = "\n".join(wheel.plan.without)
     assert "0x605D:00 (halt option code): how the axis slows down on halt is the drive's own" in told
@@ -82,13 +82,13 @@ def test_a_drive_that_is_not_fit_for_the_press_is_refused_by_name(profile: str, 
 
 
 @pytest.mark.parametrize("profile", PRESSES)
-def test_the_torque_limit_of_the_press_stands(profile: str) -> None:
+def test_the_torque_limit_of_the_press_is_kept(profile: str) -> None:
     bus = Bus(axes(profile)).connect()
     assert bus.nodes[1].torque_limit_nm == pytest.approx(0.4 * PRESS.rated_torque_nm)
 
 
 @pytest.mark.parametrize("profile", PROFILES)
-def test_the_shaft_turns_as_it_is_told_and_takes_as_long(profile: str) -> None:
+def test_the_shaft_follows_its_command_in_the_expected_time(profile: str) -> None:
     bus = Bus(axes(profile)).connect().enable()
     wheel, node = bus.drives[0], bus.nodes[0]
     assert wheel.state is State.OPERATION_ENABLED
@@ -122,7 +122,7 @@ def test_without_the_pc_every_drive_stops(profile: str) -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES)
-def test_a_yaw_axis_is_homed_and_goes_where_it_is_told(profile: str) -> None:
+def test_a_yaw_axis_is_homed_and_goes_to_its_target(profile: str) -> None:
     bus = Bus(axes(profile)).connect()
     yaw, node = bus.drives[2], bus.nodes[2]
     bus.master.start(yaw, yaw.home())
@@ -216,6 +216,6 @@ def test_without_heartbeat_consumer_and_deadline_a_drive_is_refused() -> None:
 
 
 @pytest.mark.parametrize("profile", PROFILES)
-def test_every_profile_says_what_was_checked(profile: str) -> None:
+def test_every_profile_states_its_checks(profile: str) -> None:
     one = drive_profile(profile)
     assert one.title and len(one.checked) > 60

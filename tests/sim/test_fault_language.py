@@ -62,14 +62,14 @@ def test_a_value_without_a_unit():
         ("t=-1 s: guard opened", "begins at t=0 s"),
     ],
 )
-def test_what_cannot_be_read_is_refused_with_what_was_expected(text: str, expected: str):
+def test_unreadable_lines_are_refused_with_the_expected_form(text: str, expected: str):
     with pytest.raises(FaultTextError) as caught:
         LANGUAGE.parse(text)
     assert expected in str(caught.value)
     assert text in str(caught.value)
 
 
-def test_all_bad_lines_are_told_at_once():
+def test_all_bad_lines_are_reported_at_once():
     with pytest.raises(FaultTextError) as caught:
         LANGUAGE.parse_script(["soon: operator stop", "t=1 s: guard opened", "t=1 s: nothing"])
     assert len(str(caught.value).splitlines()) == 2

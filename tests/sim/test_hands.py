@@ -65,7 +65,7 @@ def test_a_person_may_write_a_quantity_in_several_ways(text: str) -> None:
         ("1 x yes wet 1 N slip", "slip: '' is not a number"),
     ],
 )
-def test_what_cannot_be_read_is_refused_and_nothing_is_done(words: str, why: str) -> None:
+def test_unreadable_lines_are_refused_and_nothing_is_done(words: str, why: str) -> None:
     machine = Machine()
     with pytest.raises(ValueError, match="^" + why.replace("|", r"\|").replace("?", r"\?") + "$"):
         EVERY.act(machine, words.split())

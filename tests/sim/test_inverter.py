@@ -146,7 +146,7 @@ def test_without_a_torque_there_are_two_fields_and_no_number(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("index", ["6048", "6049", "604A", "6042", "6044", "6007", "605A", "605E"])
-def test_an_inverter_without_what_turns_and_stops_it_is_refused_by_name(tmp_path: Path, index: str) -> None:
+def test_an_inverter_without_its_essential_objects_is_refused_by_name(tmp_path: Path, index: str) -> None:
     drive = Bus((replace(INVERTER, profile=without(tmp_path, index)),)).connect().drives[0]
     assert f"0x{index}:0" in (drive.refused or "")
 

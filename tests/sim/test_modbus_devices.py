@@ -157,7 +157,7 @@ def test_emissivity_is_kept_within_the_device() -> None:
 
 
 @pytest.mark.parametrize("address", [0x00, 0x0E, 0x11])
-def test_what_is_measured_cannot_be_written(address: int) -> None:
+def test_measured_values_cannot_be_written(address: int) -> None:
     assert write(IrSlave(INFRARED, 2, Quantities()), address, 0) == bytes.fromhex("028602")
 
 
@@ -394,7 +394,7 @@ def test_without_supply_there_is_neither_answer_nor_heat() -> None:
     assert oven.slave.heater_w == 0.0
 
 
-def test_the_other_controllers_profile_works_too() -> None:
+def test_the_other_controllers_profile_also_works() -> None:
     slave = ControllerSlave(load_profile("omron_e5cc"), 1, Quantities())
     write(slave, 0x2103, 900)
     write(slave, 0x0000, 0x0100)

@@ -42,7 +42,7 @@ def test_registers_are_read_as_in_the_specification() -> None:
     assert ask(device, "110300640003") == "1103" + "06" + "022b00000064"
 
 
-def test_input_registers_are_read_too() -> None:
+def test_input_registers_are_also_read() -> None:
     assert ask(Device(), "1104006C0001") == "1104020000"
 
 
@@ -72,7 +72,7 @@ def test_many_registers_are_written_and_counted() -> None:
         ("1110006D00020400010002", "119002"),
     ],
 )
-def test_what_cannot_be_is_answered_with_an_exception(request_: str, reply: str) -> None:
+def test_impossible_requests_are_answered_with_an_exception(request_: str, reply: str) -> None:
     assert ask(Device(), request_) == reply
 
 

@@ -97,7 +97,7 @@ def test_velocity_trajectory_does_not_depend_on_the_cuts(
     assert pieces.position == pytest.approx(whole.position, abs=3e-5)
 
 
-def test_blocked_shaft_stands_while_the_demand_moves_on() -> None:
+def test_blocked_shaft_is_at_rest_while_the_demand_moves_on() -> None:
     axis = VelocityAxis(acceleration=2.0)
     axis.aim(1.0)
     run(axis, 1.0)

@@ -36,7 +36,7 @@ def test_each_part_of_the_key_makes_a_stream_of_its_own(other: NormalStream) -> 
     assert abs(np.corrcoef(mine, theirs)[0, 1]) < 0.2
 
 
-def test_first_numbers_stay_what_they_are() -> None:
+def test_first_numbers_never_change() -> None:
     """Philox and SeedSequence are stable by contract; this is the alarm if a numpy release changes its normals."""
     expected = [-0.4695556, 0.6289600, 0.3961664]
     assert take(NormalStream(1, "ir", 1, 1, 1, 1, 1), 3) == pytest.approx(expected, abs=1e-6)
@@ -54,7 +54,7 @@ def test_reading_by_fours_gives_the_same_numbers() -> None:
     assert [x for _ in range(500) for x in by_fours.next4()] == take(NormalStream(1, "cell", 1), 2000)
 
 
-def test_copied_stream_goes_on_alike_and_by_itself() -> None:
+def test_copied_stream_continues_identically_and_independently() -> None:
     stream = NormalStream(1, "ir", 5)
     take(stream, 100)
     twin = copy.deepcopy(stream)
@@ -105,7 +105,7 @@ def test_mean_over_next_to_no_time_scatters_as_the_fluctuation_itself() -> None:
 
 
 @pytest.mark.parametrize("count", [0, 1, 127, 128, 129, 128 + 1024, 3000])
-def test_a_stream_counts_what_was_drawn_and_skips(count: int) -> None:
+def test_a_stream_counts_its_draws_and_skips(count: int) -> None:
     drawn, skipped = NormalStream(1, "count"), NormalStream(1, "count")
     for _ in range(count):
         drawn.next()

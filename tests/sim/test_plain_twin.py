@@ -42,7 +42,7 @@ def test_the_hands_at_it_are_its_plants() -> None:
     assert (plant.installed, plant.repeats) == ([(3, "NR")], [(1, 2, 3)])
 
 
-def test_a_sensor_that_is_to_show_what_the_plant_has_not_is_refused() -> None:
+def test_a_sensor_of_a_quantity_that_the_plant_lacks_is_refused() -> None:
     with pytest.raises(UnknownQuantityError, match="warmth"):
         PlainTwin(spec_of(bench_rig()), CountingPlant(), {"cell": {"fx": "warmth"}})
 

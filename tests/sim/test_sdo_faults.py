@@ -38,7 +38,7 @@ def test_a_toggle_error_comes_in_the_first_segment() -> None:
     assert drive.sdo(bytes.fromhex("6000000000000000")).hex() == "17" + DEVICE_TYPE + "000000"
 
 
-def test_what_is_written_is_still_taken_by_a_server_that_forgets_to_toggle() -> None:
+def test_a_server_that_forgets_to_toggle_still_takes_writes() -> None:
     drive = bench("toggle")
     drive.write(0x6083, 0, 777, 4)
     assert drive.drive.store.values[(o.PROFILE_ACCELERATION, 0)] == 777
@@ -53,7 +53,7 @@ def test_what_is_written_is_still_taken_by_a_server_that_forgets_to_toggle() -> 
         ("belt drive mode refused", "0x6060"),
     ],
 )
-def test_a_drive_that_cannot_be_talked_to_is_not_used_and_the_reason_says_why(fault: str, reason: str) -> None:
+def test_a_drive_without_sdo_access_is_not_used_and_the_reason_is_given(fault: str, reason: str) -> None:
     stage = Stage(RECIPES["short"])
     stage.inject(Injection(FaultTime(at_s=0.0), CATALOGUE[fault]))
     while not stage.run.finished:

@@ -35,7 +35,7 @@ def test_it_comes_so_often_a_second_in_the_mean() -> None:
     assert crossings / (0.001 * STEPS) == pytest.approx(5.0, rel=0.03)
 
 
-def test_a_copy_goes_on_by_itself_the_same_way() -> None:
+def test_a_copy_continues_independently_and_identically() -> None:
     one = StickSlip(0.2, 4.0, NormalStream(1, "periods"))
     for _ in range(700):
         one.factor(0.01)

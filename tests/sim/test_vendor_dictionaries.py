@@ -54,13 +54,13 @@ def test_a_drive_of_the_makers_dictionary_connects_in_one_attempt(maker: str, co
 
 
 @pytest.mark.parametrize("maker", ["maxon_epos4", "elmo_gold"])
-def test_it_does_so_with_digital_inputs_and_outputs_too(maker: str) -> None:
+def test_it_also_connects_with_digital_inputs_and_outputs(maker: str) -> None:
     drive = connected(maker, PRESS)
     assert drive.refused is None
     assert drive.inputs_stamp_s > 0.0
 
 
-def test_what_an_epos4_is_done_without_is_what_its_sheet_lacks() -> None:
+def test_the_objects_reported_missing_on_an_epos4_are_those_its_sheet_lacks() -> None:
     told = [one.split(" ")[1] for one in connected("maxon_epos4", PRESS).plan.without]
     assert told == ["0x605D:00", "0x60FE:02", "0x1801:05", "0x1400:05"]
 

@@ -143,7 +143,7 @@ def test_frames_that_are_none_of_ours_are_counted() -> None:
     ("socketcan can0", {"no acknowledgement": 2, "controller": 1, "bus error": 1, "error": 1}),
     ("pcan PCAN_USBBUS1", {"error": 4}),
 ])
-def test_error_frames_are_counted_by_what_they_say(name: str, counted: dict[str, int]) -> None:
+def test_error_frames_are_counted_by_type(name: str, counted: dict[str, int]) -> None:
     frames = [can.Message(arbitration_id=bits, is_error_frame=True) for bits in (0x020, 0x024, 0x080, 0x400)]
     port = PythonCanPort(StubBus([*frames, can.Message(arbitration_id=0x185, is_extended_id=False)]), name=name)
     assert collect(port, 1) == [(100.0, 0x185, b"")]
@@ -162,7 +162,7 @@ class StatefulBus(StubBus):
         return can.BusState.PASSIVE
 
 
-def test_a_state_is_told_where_the_interface_tells_one() -> None:
+def test_a_state_is_reported_where_the_interface_reports_one() -> None:
     port, other = PythonCanPort(StatefulBus([])), PythonCanPort(StubBus([]))
     assert isinstance(port, TellingCanPort)
     assert (port.state, other.state) == ("passive", "")
@@ -181,7 +181,7 @@ def test_any_receive_error_is_a_lost_bus(error: Exception) -> None:
 
 
 @pytest.mark.filterwarnings("ignore::pytest.PytestUnhandledThreadExceptionWarning")
-def test_an_error_no_adapter_announces_is_a_lost_bus_too() -> None:
+def test_an_error_that_no_adapter_announces_is_also_a_lost_bus() -> None:
     port = PythonCanPort(StubBus([KeyError("bug in a driver")]))
     assert "the receive thread failed" in until_lost(port)
     port.close()
@@ -252,7 +252,7 @@ def test_an_adapter_that_does_not_open_is_a_lost_bus() -> None:
     ],
     ids=["SYNC, heartbeat, SDO", "emergency", "boot-up", "changed inputs", "states", "speed, warning, target reached"],
 )
-def test_what_a_scan_should_not_wait_for_is_told_at_once(frames: list[tuple[int, str]], calls: int) -> None:
+def test_urgent_frames_are_reported_at_once(frames: list[tuple[int, str]], calls: int) -> None:
     told: list[int] = []
     script: list[object] = [
         can.Message(arbitration_id=can_id, data=bytes.fromhex(data), is_extended_id=False) for can_id, data in frames
@@ -263,7 +263,7 @@ def test_what_a_scan_should_not_wait_for_is_told_at_once(frames: list[tuple[int,
     assert len(told) == calls + 1  # the end of reception is reported last
 
 
-def test_frames_of_other_programs_of_this_computer_are_heard() -> None:
+def test_frames_of_other_programs_of_this_computer_are_received() -> None:
     # As python-can gives them on SocketCAN: hardbyte/python-can#1274.
     local = can.Message(arbitration_id=0x000, data=b"\x81\x01", is_extended_id=False, is_rx=False)
     port = PythonCanPort(StubBus([local]))
@@ -297,7 +297,7 @@ def test_an_interface_that_gives_our_frames_back_is_recognised_and_they_are_take
     port.close()
 
 
-def test_a_second_master_is_heard_through_an_interface_that_gives_ours_back(channel: str, peer: can.BusABC) -> None:
+def test_a_second_master_is_detected_behind_an_interface_that_echoes_ours(channel: str, peer: can.BusABC) -> None:
     port = echoing(channel)
     port.send(0x080, b"", now=0.0)
     peer.send(can.Message(arbitration_id=0x080, is_extended_id=False))

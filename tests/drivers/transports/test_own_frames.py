@@ -20,13 +20,13 @@ def begun() -> OwnFrames:
     return own
 
 
-def test_before_anything_is_sent_every_frame_is_somebody_elses() -> None:
+def test_before_the_first_send_every_frame_is_foreign() -> None:
     own = OwnFrames(TOKEN)
     assert own.others([SYNC], 0.01) == [SYNC]
     assert own.echoes is None
 
 
-def test_what_looks_like_ours_waits_until_it_is_known_whether_ours_come_back() -> None:
+def test_a_frame_like_ours_waits_until_the_echo_is_known() -> None:
     own = begun()
     other = (0.01, 0x181, b"\x01")
     assert own.others([SYNC, other], 0.02) == [other]
@@ -53,13 +53,13 @@ def test_one_frame_more_than_we_sent_is_another_masters() -> None:
     assert own.others([PROBE, SYNC, SYNC], 0.02) == [SYNC]
 
 
-def test_ours_are_known_in_another_order_too() -> None:
+def test_our_frames_are_recognised_in_any_order() -> None:
     own = begun()
     own.sent(0x201, b"\x0f", 0.0)
     assert own.others([PROBE, (0.01, 0x201, b"\x0f"), SYNC], 0.02) == []
 
 
-def test_a_frame_of_ours_that_never_came_back_hides_nobodys_for_long() -> None:
+def test_a_frame_of_ours_that_never_came_back_hides_foreign_frames_only_briefly() -> None:
     own = begun()
     own.others([PROBE], 0.02)
     assert own.others([], RETURN_S + 0.1) == []

@@ -38,14 +38,14 @@ def ends() -> Iterator[tuple[SerialLine, int, int]]:
             continue  # the test closed it
 
 
-def test_what_is_written_arrives(ends: tuple[SerialLine, int, int]) -> None:
+def test_written_bytes_arrive(ends: tuple[SerialLine, int, int]) -> None:
     line, master, _ = ends
     line.write(b"\x01\x03\x00", 0.0)
     assert select([master], [], [], PATIENCE_S)[0]
     assert os.read(master, 10) == b"\x01\x03\x00"
 
 
-def test_what_arrives_is_stamped_with_the_time_of_asking(ends: tuple[SerialLine, int, int]) -> None:
+def test_received_bytes_are_stamped_with_the_time_of_the_read(ends: tuple[SerialLine, int, int]) -> None:
     line, master, slave = ends
     os.write(master, b"\x0d\x0a\x11\x13\x00\xff")
     assert select([slave], [], [], PATIENCE_S)[0]
@@ -109,7 +109,7 @@ def test_the_latency_timer_of_an_adapter_is_read_where_its_driver_has_one(tmp_pa
     assert latency_timer_s("/dev/ttyUSB1", tmp_path) is None
 
 
-def test_a_pty_has_no_low_latency_flag_and_says_so(ends: tuple[SerialLine, int, int]) -> None:
+def test_a_pty_reports_that_it_has_no_low_latency_flag(ends: tuple[SerialLine, int, int]) -> None:
     line, _, _ = ends
     assert line.low_latency in (False, None)
     assert line.latency_timer_s is None

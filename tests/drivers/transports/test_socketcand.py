@@ -95,7 +95,7 @@ def test_a_server_that_refuses_is_a_lost_bus() -> None:
             open_can("socketcand", f"vcan0@127.0.0.1:{listener.getsockname()[1]}", 500_000)
 
 
-def test_nobody_listening_is_told_at_once() -> None:
+def test_a_missing_server_is_reported_at_once() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
     with pytest.raises(BusLost, match=f"vcan0@127.0.0.1:{port}"):
@@ -103,12 +103,12 @@ def test_nobody_listening_is_told_at_once() -> None:
 
 
 @pytest.mark.parametrize("channel", ["vcan0", "vcan0@host", "vcan0@:29536", "@host:1", "vcan0@host:http"])
-def test_a_channel_without_an_address_says_what_was_expected(channel: str) -> None:
+def test_a_channel_without_an_address_names_the_expected_form(channel: str) -> None:
     with pytest.raises(ValueError, match="bus@host:port"):
         settings_of(channel)
 
 
-def test_a_server_that_says_nothing_is_a_lost_bus(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_silent_server_is_a_lost_bus(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr("drivers.transports.socketcand.CONNECT_S", 0.05)
     with (
         socket.create_server(("127.0.0.1", 0)) as listener,

@@ -27,13 +27,13 @@ def ends() -> Iterator[tuple[TcpLine, socket.socket]]:
         line.close()
 
 
-def test_what_is_written_arrives(ends: tuple[TcpLine, socket.socket]) -> None:
+def test_written_bytes_arrive(ends: tuple[TcpLine, socket.socket]) -> None:
     line, peer = ends
     line.write(b"abc", 0.0)
     assert peer.recv(10) == b"abc"
 
 
-def test_what_arrives_is_stamped_with_the_time_of_asking(ends: tuple[TcpLine, socket.socket]) -> None:
+def test_received_bytes_are_stamped_with_the_time_of_the_read(ends: tuple[TcpLine, socket.socket]) -> None:
     line, peer = ends
     peer.sendall(b"abc")
     assert select([line], [], [], PATIENCE_S)[0]
@@ -63,7 +63,7 @@ def test_a_reset_connection_is_bus_lost(ends: tuple[TcpLine, socket.socket]) -> 
         line.read(0.0)
 
 
-def test_what_the_kernel_does_not_take_follows_later(ends: tuple[TcpLine, socket.socket]) -> None:
+def test_bytes_that_the_kernel_refuses_are_sent_later(ends: tuple[TcpLine, socket.socket]) -> None:
     line, peer = ends
     size = 16_000_000
     line.write(bytes(size), 0.0)
@@ -108,7 +108,7 @@ def test_a_connection_that_does_not_come_back_in_time_is_bus_lost() -> None:
     line.close()
 
 
-def test_nobody_listening_is_bus_lost() -> None:
+def test_a_missing_server_is_bus_lost() -> None:
     with socket.create_server(("127.0.0.1", 0)) as listener:
         port = listener.getsockname()[1]
     with pytest.raises(BusLost, match=f"127.0.0.1:{port}"):

@@ -33,7 +33,7 @@ def test_adhesion_is_that_of_a_calculation_by_hand() -> None:
     assert expected == pytest.approx(0.67672, abs=5e-6)
 
 
-def test_hysteresis_is_the_figure_within_what_the_grid_does() -> None:
+def test_hysteresis_matches_the_figure_within_the_error_of_the_grid() -> None:
     found = LAW.components(25.0, LOAD_N, 1.0)
     assert found.hysteresis == pytest.approx(0.0152, rel=0.02)
     assert found.hysteresis == pytest.approx(0.0152, abs=5e-5)
@@ -104,7 +104,7 @@ def test_slower_than_slow_it_is_that_of_slow_sliding() -> None:
     assert LAW.mu(25.0, LOAD_N, 0.0) == LAW.mu(25.0, LOAD_N, 1e-6)
 
 
-def test_a_constant_shift_of_temperature_does_what_a_decade_of_frequency_does() -> None:
+def test_a_constant_shift_of_temperature_equals_a_decade_of_frequency() -> None:
     colder, faster = LAW.dynamic(9.0, 1e-2), LAW.dynamic(25.0, 1.0)
     assert colder[0].magnitude_pa == pytest.approx(faster[0].magnitude_pa, rel=1e-12)
 

@@ -64,7 +64,7 @@ def test_a_law_that_is_not_known_is_looked_up_elsewhere() -> None:
         laws.find("nowhere")
 
 
-def test_an_unknown_law_is_told_with_those_that_are_there() -> None:
+def test_an_unknown_law_is_reported_with_the_known_ones() -> None:
     known = "paper, v2, wlf_bell, two_bells, power, arrhenius, persson, greta"
     with pytest.raises(laws.UnknownLawError, match=f"no friction law 'magic'; known: {known}"):
         laws.make("magic", "1#")
@@ -95,7 +95,7 @@ def test_a_law_that_has_no_value_without_slip_is_refused() -> None:
 SETTING = laws.LawSetting(Shelf(), "grit", 100.0)
 
 
-def test_a_law_of_materials_is_made_of_what_the_setting_finds() -> None:
+def test_a_law_of_materials_is_made_of_the_materials_that_the_setting_finds() -> None:
     law = laws.with_parts("persson", laws.make("persson", "plain", setting=SETTING))
     # 10 N on 100 mm2 are 1e5 Pa.
     assert law.mu(20.0, 10.0, 1.0) == pytest.approx(0.291203, rel=1e-4)
@@ -132,6 +132,6 @@ def test_a_setting_that_lacks_something_is_refused(setting: laws.LawSetting, mes
         laws.make("persson", "SBR", setting=setting)
 
 
-def test_a_law_that_does_not_know_its_parts_says_so() -> None:
+def test_a_law_with_unknown_parts_reports_it() -> None:
     with pytest.raises(laws.NoPartsError, match="law 'paper' gives the coefficient alone"):
         laws.with_parts("paper", laws.make("paper", "1#"))

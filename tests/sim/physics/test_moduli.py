@@ -133,7 +133,7 @@ def test_a_grid_with_5_percent_of_noise_stays_within_10_percent() -> None:
     assert np.max(np.abs(modulus.complex_pa(rate, 20.0) / ZENER.complex_pa(rate, 20.0) - 1.0)) < 0.1
 
 
-def test_outside_its_range_a_table_says_its_limits() -> None:
+def test_outside_its_range_a_table_states_its_limits() -> None:
     modulus = TabulatedModulus.of_sweep(sweep(), decade_k=8.0)
     assert modulus.limits_hz(20.0) == pytest.approx((10.0**-7.5, 10.0**12.5), rel=1e-9)
     modulus.complex_pa(2.0 * math.pi * np.array([10.0**-7.5, 10.0**12.5]), 20.0)
@@ -154,7 +154,7 @@ def test_a_held_end_counts_how_far_it_was_held() -> None:
     assert modulus.beyond_decades == pytest.approx(1.5, rel=1e-9)
 
 
-def test_tables_of_which_no_modulus_can_be_made_are_refused() -> None:
+def test_tables_that_give_no_modulus_are_refused() -> None:
     rows = sweep()
     with pytest.raises(ValueError, match="at least 2 rows, not 1"):
         TabulatedModulus.of_sweep(rows[:1])

@@ -116,7 +116,7 @@ def test_finer_points_change_nothing(speed: float) -> None:
 
 
 @pytest.mark.parametrize("temperature_c", [-40.0, -10.0, 5.0, 40.0, 80.0])
-def test_a_temperature_does_what_a_factor_of_speed_does(temperature_c: float) -> None:
+def test_a_temperature_shift_equals_a_factor_of_speed(temperature_c: float) -> None:
     factor = 10.0 ** (log10_shift(temperature_c, -3.0) - log10_shift(20.0, -3.0))
     for speed in (1e-6, 1e-3, 1e-1):
         shifted = law().components(20.0, 4e5, speed * factor).hysteresis
@@ -137,7 +137,7 @@ def test_the_maximum_is_where_the_grit_and_the_loss_frequency_put_it() -> None:
     assert speed == pytest.approx(1.5e-4 * LOSS_RAD_S / (2.0 * math.pi), rel=0.1)
 
 
-def test_the_maximum_stands_at_the_same_reduced_speed_at_every_temperature() -> None:
+def test_the_maximum_is_at_the_same_reduced_speed_at_every_temperature() -> None:
     places = [math.log10(bell(law(), t, low, low + 6.0)[0]) + log10_shift(t, -3.0)
               for t, low in ((0.0, -6.0), (20.0, -4.0), (60.0, -2.0))]  # fmt: skip
     assert max(places) - min(places) < 5e-3
@@ -183,7 +183,7 @@ def test_a_table_of_the_spectrum_gives_the_same() -> None:
     assert table.components(20.0, 4e5, 1e-2).hysteresis == pytest.approx(expected, rel=1e-6)
 
 
-def test_what_makes_no_law_is_refused() -> None:
+def test_impossible_laws_are_refused() -> None:
     rubber, surface = Rubber("SBR", SBR), Surface("grit", ABRASIVE)
     assert persson(rubber, surface, 100.0, {}).components(20.0, 40.0, 1e-2) == law().components(20.0, 4e5, 1e-2)
     with pytest.raises(ValueError, match="'plate' has no spectrum of heights"):

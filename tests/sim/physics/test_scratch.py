@@ -74,7 +74,7 @@ def test_partial_contact_becomes_full_contact_without_a_jump() -> None:
     assert harmonics(1.0 - 1e-9, 100) == pytest.approx(harmonics(1.0, 100), abs=1e-6)
 
 
-def test_what_hysteresis_is_made_of_changes_smoothly_with_the_pressure() -> None:
+def test_the_parts_of_hysteresis_change_smoothly_with_the_pressure() -> None:
     scratch = Scratch(WAVE_M, TREAD_M)
     shares = np.geomspace(0.01, 0.9, 400)
     logs = np.log([squares_m(scratch, float(share), 0.5) for share in shares])
@@ -128,6 +128,6 @@ def test_finer_grids_come_down_to_the_closed_form() -> None:
 @pytest.mark.parametrize(
     ("length_m", "depth_m", "count", "depths"), [(0.0, 0.01, 100, 50), (0.01, -1.0, 100, 50), (0.01, 0.01, 0, 50)]
 )
-def test_what_is_no_grid_is_refused(length_m: float, depth_m: float, count: int, depths: int) -> None:
+def test_invalid_grids_are_refused(length_m: float, depth_m: float, count: int, depths: int) -> None:
     with pytest.raises(ValueError, match=r"above 0 m|1 harmonic"):
         Scratch(length_m, depth_m, count, depths)

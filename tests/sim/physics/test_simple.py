@@ -25,7 +25,7 @@ def test_the_power_law_is_finite_at_standstill() -> None:
         assert law.mu(20.0, 10.0, 0.0) == law.mu(20.0, 10.0, 1e-6) > 0.0
 
 
-def test_the_maximum_stands_at_the_reference() -> None:
+def test_the_maximum_is_at_the_reference() -> None:
     p = BELL.parameters
     assert BELL.mu(p.t_ref, 10.0, p.v_ref) == pytest.approx(p.mu_max, rel=1e-12)
     for decades in (-p.width, p.width):
@@ -42,7 +42,7 @@ def test_warmth_moves_the_maximum_by_one_energy(temperature_c: float) -> None:
     assert (moved > p.v_ref) == (temperature_c > p.t_ref)
 
 
-def test_the_bell_at_standstill_is_its_foot_and_knows_no_load() -> None:
+def test_the_bell_at_standstill_is_its_foot_at_any_load() -> None:
     assert BELL.mu(20.0, 10.0, 0.0) == BELL.parameters.mu_0
     assert BELL.mu(20.0, 10.0, 1e-3) == BELL.mu(20.0, 400.0, 1e-3)
 

@@ -87,7 +87,7 @@ def test_at_its_points_and_ends_a_table_is_exact() -> None:
                 assert table.mu(*at) == pytest.approx(slow.mu(*at), rel=1e-9)
 
 
-def test_a_table_says_its_own_error() -> None:
+def test_a_table_states_its_own_error() -> None:
     rough = tabulated.build_at(Counted(sharpness=3.0), SPAN, (12, 9, 5))[0]
     errors = [abs(rough.mu(*at) / Counted(sharpness=3.0).mu(*at) - 1.0) for at in points(1000)]
     assert rough.error > tabulated.ALLOWED
@@ -184,7 +184,7 @@ def test_all_that_enters_makes_another_file(tmp_path: Path, monkeypatch: pytest.
     assert files() == 6
 
 
-def test_measured_materials_are_told_by_their_content() -> None:
+def test_measured_materials_are_identified_by_their_content() -> None:
     rows = [DmaRow(-t, 1.0, 1e7 * 1.1**t, 1e6 * 1.2**t) for t in range(5)]
     changed = [*rows[:4], rows[4]._replace(loss_pa=1.0)]
     of = TabulatedModulus.of_sweep
@@ -195,7 +195,7 @@ def test_measured_materials_are_told_by_their_content() -> None:
 
 
 @pytest.mark.usefixtures("quick")
-def test_materials_without_a_content_to_tell_are_not_kept(tmp_path: Path) -> None:
+def test_materials_without_a_content_hash_are_not_kept(tmp_path: Path) -> None:
     class Unnamed(Shelf):
         def rubber(self, name: str):  # type: ignore[no-untyped-def]
             class Own:

@@ -74,7 +74,7 @@ def test_figures_out_of_range_are_refused(figures: dict[str, float], message: st
         two_bells("SBR", figures)
 
 
-def test_outside_the_shifts_range_and_where_friction_heats_it_says_so() -> None:
+def test_outside_the_shifts_range_and_where_friction_heats_it_warns() -> None:
     assert [*LAW.caveats(20.0, 10.0, 1e-3)] == []
     (cold,) = LAW.caveats(60.0, 10.0, 1e-3)
     assert "60 degC is outside -53 to 47 degC" in cold

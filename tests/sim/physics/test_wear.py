@@ -25,6 +25,6 @@ def test_a_belt_keeps_its_grip_unless_it_is_asked_to_lose_some() -> None:
 
 
 @pytest.mark.parametrize("wrong", [{"loss": 1.0}, {"loss": -0.1}, {"loss_travel": 0.0}])
-def test_what_is_no_share_is_refused(wrong: dict[str, float]) -> None:
+def test_a_number_that_is_no_share_is_refused(wrong: dict[str, float]) -> None:
     with pytest.raises(ValueError, match="CounterfaceParameters"):
         CounterfaceParameters(**wrong)

@@ -29,7 +29,7 @@ def test_the_papers_compounds_keep_their_laws_whatever_a_file_states(model: str,
     assert found.cornering_factor(-30.0) == pytest.approx(1.29 if compound == "1#" else 1.0)
 
 
-def test_a_compound_without_a_law_rubs_as_the_assumed_one_and_the_law_says_so() -> None:
+def test_a_compound_without_a_law_rubs_as_the_assumed_one_and_the_law_reports_it() -> None:
     found = wheel_law("v2", "none", LawSetting(stated=stating))
     assert found.mu(*AT) == laws.make("v2", ASSUMED).mu(*AT)
     assert "'none' is assumed, not known" in found.assumed and found.cornering == 0.0

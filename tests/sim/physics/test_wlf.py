@@ -31,7 +31,7 @@ def test_the_shift_is_refused_at_its_pole() -> None:
         log10_shift(-101.5, 0.0)
 
 
-def test_the_maximum_stands_at_the_reference_speed_and_temperature() -> None:
+def test_the_maximum_is_at_the_reference_speed_and_temperature() -> None:
     p = LAW.parameters
     assert LAW.mu(p.t_ref, 10.0, p.v_ref) == pytest.approx(p.mu_max, rel=1e-12)
 
@@ -44,7 +44,7 @@ def test_a_width_from_the_maximum_the_bell_is_down_to_one_over_e() -> None:
 
 
 @pytest.mark.parametrize("temperature_c", [-40.0, 0.0, 20.0, 60.0, 100.0])
-def test_a_temperature_does_what_a_factor_of_speed_does(temperature_c: float) -> None:
+def test_a_temperature_shift_equals_a_factor_of_speed(temperature_c: float) -> None:
     p = LAW.parameters
     for speed in (1e-6, 1e-4, 1e-2):
         shifted = speed * 10.0 ** LAW.shift(temperature_c)
@@ -71,7 +71,7 @@ def test_at_and_below_the_pole_there_is_no_law(below_k: float) -> None:
         LAW.mu(LAW.parameters.t_ref - LAW.parameters.c2 - below_k, 10.0, 1e-3)
 
 
-def test_the_shift_is_said_to_hold_for_100_k_above_the_glass_transition() -> None:
+def test_the_shift_is_stated_valid_for_100_k_above_the_glass_transition() -> None:
     beyond = [c for c in (-53.1, -53.0, 47.0, 47.1) if list(LAW.caveats(c, 10.0, 1e-3))]
     assert beyond == [-53.1, 47.1]
 

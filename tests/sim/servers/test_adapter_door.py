@@ -50,7 +50,7 @@ def test_nodes_boot_and_answer_on_the_interface(server: RigServer, bus: can.BusA
 
 
 @pytest.mark.parametrize("special", [{"is_extended_id": True}, {"is_remote_frame": True, "is_extended_id": False}])
-def test_what_the_simulated_bus_does_not_carry_is_counted(
+def test_frames_that_the_simulated_bus_does_not_carry_are_counted(
     server: RigServer, bus: can.BusABC, special: dict[str, bool]
 ) -> None:
     bus.send(can.Message(arbitration_id=0x601, **special))

@@ -114,7 +114,7 @@ def test_each_client_gets_its_own_replies(gateway: ModbusGateway) -> None:
     assert other.outgoing == b"\x99\x99" + REPLY[2:]
 
 
-def test_what_a_client_that_is_gone_has_asked_is_dropped(gateway: ModbusGateway) -> None:
+def test_requests_of_a_gone_client_are_dropped(gateway: ModbusGateway) -> None:
     one, other = ModbusSession(), ModbusSession()
     gateway.take(one, READ * 3, 1.0)
     gateway.forget(one)
@@ -123,7 +123,7 @@ def test_what_a_client_that_is_gone_has_asked_is_dropped(gateway: ModbusGateway)
     assert gateway.wire.requests == 2  # one's first was on the line already
 
 
-def test_the_next_client_does_not_wait_for_a_slave_that_is_silent_to_one_that_is_gone(gateway: ModbusGateway) -> None:
+def test_the_next_client_does_not_wait_for_a_slave_that_is_silent_to_a_gone_client(gateway: ModbusGateway) -> None:
     one, other = ModbusSession(), ModbusSession()
     gateway.take(one, bytes.fromhex("0001 0000 0006 09 03 0000 0002"), 1.0)
     gateway.take(other, READ, 1.0)
@@ -135,7 +135,7 @@ def test_the_next_client_does_not_wait_for_a_slave_that_is_silent_to_one_that_is
     assert t == pytest.approx(1.001 + 17 * 10 / 115200 + 0.00175 + 0.002)
 
 
-def test_a_reply_to_one_that_is_gone_is_let_pass_before_the_next_request(gateway: ModbusGateway) -> None:
+def test_a_reply_to_a_gone_client_is_let_pass_before_the_next_request(gateway: ModbusGateway) -> None:
     one, other = ModbusSession(), ModbusSession()
     gateway.wire.impair = Impairment("split", delay_s=0.01)
     gateway.take(one, READ, 1.0)
@@ -147,7 +147,7 @@ def test_a_reply_to_one_that_is_gone_is_let_pass_before_the_next_request(gateway
     assert gateway.wire.collisions == 0
 
 
-def test_a_request_of_one_that_is_gone_on_an_unplugged_line_is_dropped(gateway: ModbusGateway) -> None:
+def test_a_request_of_a_gone_client_on_an_unplugged_line_is_dropped(gateway: ModbusGateway) -> None:
     one = ModbusSession()
     gateway.take(one, READ, 1.0)
     gateway.wire.disconnect()
@@ -169,7 +169,7 @@ def test_a_request_may_come_in_pieces(gateway: ModbusGateway) -> None:
 
 
 @pytest.mark.parametrize("header", ["0001 0001 0006 01", "0001 0000 0001 01", "0001 0000 0100 01"])
-def test_what_is_not_modbus_tcp_ends_the_connection(header: str) -> None:
+def test_bytes_that_are_not_modbus_tcp_end_the_connection(header: str) -> None:
     session = ModbusSession()
     assert session.feed(bytes.fromhex(header) + b"\x03\x00\x00\x00\x02") == []
     assert session.ended

@@ -79,7 +79,7 @@ def test_a_port_at_another_baud_rate_gets_no_answer(bench: Bench, tmp_path: Path
 
 
 @posix
-def test_python_can_hears_the_nodes_boot_and_gets_an_answer(bench: Bench, tmp_path: Path) -> None:
+def test_python_can_receives_the_nodes_boot_up_and_an_answer(bench: Bench, tmp_path: Path) -> None:
     bus = can.Bus(interface="slcan", channel=str(tmp_path / "links" / "can"), bitrate=500_000, sleep_after_open=0.0)
     try:
         assert not bench.server.can.taken
@@ -109,7 +109,7 @@ def test_links_are_gone_with_the_doors_and_nothing_else_is_replaced(tmp_path: Pa
 
 
 @posix
-def test_what_nobody_reads_is_dropped_beyond_a_limit() -> None:
+def test_unread_bytes_are_dropped_beyond_a_limit() -> None:
     pty = Pty(115200)
     try:
         written = 0
@@ -136,7 +136,7 @@ def test_an_unplugged_bus_closes_the_adapter(bench: Bench, tmp_path: Path) -> No
         os.close(near)
 
 
-def test_a_system_without_pseudo_terminals_says_so(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_system_without_pseudo_terminals_is_reported(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "platform", "win32")
     with pytest.raises(OSError, match="pseudo-terminals") as refused:
         Pty(9600)

@@ -69,7 +69,7 @@ def test_several_slaves_answer_on_one_line() -> None:
     assert units == [1, 2, 1]
 
 
-def test_who_speaks_while_a_slave_does_spoils_both() -> None:
+def test_a_request_during_a_reply_spoils_both() -> None:
     ear = line()
     ear.hear(READ, 1.0)
     ear.serve(ear.due_s)  # the slave has the line now
@@ -85,7 +85,7 @@ def test_bytes_at_another_baud_rate_are_not_understood() -> None:
     assert (ear.due_s, ear.garbled) == (inf, len(READ))
 
 
-def test_a_frame_that_is_too_long_reaches_nobody() -> None:
+def test_a_frame_that_is_too_long_reaches_no_slave() -> None:
     ear = line(115200)
     ear.hear(bytes(LONGEST_FRAME + 1), 1.0)
     assert reply(ear) == (inf, b"")

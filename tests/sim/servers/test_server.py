@@ -102,7 +102,7 @@ class Client:
         assert f"< frame {0x580 + node:03X}".encode() in self.look()
 
 
-def test_a_client_is_greeted_and_hears_the_nodes_boot(bench: Bench, connect: Connect) -> None:
+def test_a_client_is_greeted_and_receives_the_nodes_boot_up(bench: Bench, connect: Connect) -> None:
     client = Client(bench, connect(can_address(bench.server)))
     bench.run(0.4)
     assert client.text.startswith(b"< hi >< ok >< ok >")
@@ -131,7 +131,7 @@ def test_a_second_client_is_turned_away_with_a_reason(bench: Bench, connect: Con
     assert second.recv(100) == b""
 
 
-def test_a_client_may_come_after_one_that_is_gone(bench: Bench, connect: Connect) -> None:
+def test_a_client_may_come_after_another_has_gone(bench: Bench, connect: Connect) -> None:
     first = Client(bench, connect(can_address(bench.server)))
     first.socket.close()
     second = connect(can_address(bench.server))
@@ -237,7 +237,7 @@ def test_a_machine_whose_own_computer_was_late_reports_it_before_its_drives_miss
     assert bench.server.starved_s == [pytest.approx(1.0, abs=0.02)]
 
 
-def test_a_lateness_of_which_no_user_reads_is_reported_as_no_fault_of_the_drive(
+def test_a_lateness_is_reported_but_not_as_a_fault_of_the_drive(
     bench: Bench, connect: Callable[[tuple[str, int]], socket.socket]
 ) -> None:
     client = connect(can_address(bench.server))

@@ -52,7 +52,7 @@ def test_a_time_stamp_counts_milliseconds_of_a_minute() -> None:
     assert session.outgoing == b"t70110504E2\r"
 
 
-def test_a_closed_channel_neither_sends_nor_hears() -> None:
+def test_a_closed_channel_neither_sends_nor_receives() -> None:
     session = SlcanSession(500_000)
     assert session.feed(b"t0802AABB\r") == []
     session.relay([(1.0, 0x701, b"\x05")])
@@ -66,7 +66,7 @@ def test_one_opened_to_listen_sends_nothing() -> None:
     assert session.refused == 1
 
 
-def test_at_another_bit_rate_nobody_hears_anybody() -> None:
+def test_at_another_bit_rate_no_node_receives_a_frame() -> None:
     session = opened(bitrate=250_000)
     assert session.feed(b"t0802AABB\r") == []
     session.outgoing.clear()
@@ -85,14 +85,14 @@ def test_a_bit_rate_by_registers_is_the_same() -> None:
 
 
 @pytest.mark.parametrize("line", [b"T000001230", b"r7010", b"R000001230"])
-def test_what_the_simulated_bus_does_not_carry_is_counted(line: bytes) -> None:
+def test_frames_that_the_simulated_bus_does_not_carry_are_counted(line: bytes) -> None:
     session = opened()
     assert session.feed(line + b"\r") == []
     assert session.ignored == 1
 
 
 @pytest.mark.parametrize("line", [b"t0803AABB", b"t0809", b"tXYZ0", b"t08", b"S9", b"Q", b"O1", b"t080\xff", b"t0801A"])
-def test_what_is_no_command_rings_the_bell(line: bytes) -> None:
+def test_an_invalid_command_rings_the_bell(line: bytes) -> None:
     session = opened()
     assert session.feed(line + b"\r") == []
     assert (session.outgoing, session.refused) == (b"\a", 1)

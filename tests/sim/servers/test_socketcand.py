@@ -52,7 +52,7 @@ def test_elements_may_come_in_pieces_or_together(session: SocketcandSession) -> 
     [b"< send >", b"< send 201 >", b"< send 201 2 1 >", b"< send 201 9 1 2 3 4 5 6 7 8 9 >", b"< send 201 1 100 >",
      b"< send xyz 0 >", b"< send 201 1 -1 >", b"< send -01 0 >", b"< send FFF 0 >"],
 )  # fmt: skip
-def test_what_is_no_frame_is_refused_and_the_rest_goes_on(session: SocketcandSession, element: bytes) -> None:
+def test_an_invalid_frame_is_refused_and_the_rest_continues(session: SocketcandSession, element: bytes) -> None:
     assert session.feed(element + b"< send 080 0 >", 1.0) == [(0x080, b"")]
     assert session.refused + session.ignored == 1
 

@@ -67,7 +67,7 @@ def test_frames_sent_together_follow_each_other() -> None:
     assert second.heard[0][0] - first.heard[0][0] == pytest.approx(FULL_S)
 
 
-def test_nobody_hears_an_unknown_identifier() -> None:
+def test_an_unknown_identifier_reaches_no_listener() -> None:
     wire = CanWire()
     node = Echo(wire, 0x201, 0x181)
     wire.send(0x333, b"", 0.0)
@@ -83,7 +83,7 @@ def test_every_listener_of_a_broadcast_is_called_in_order_of_attachment() -> Non
     assert [can_id for _, can_id, _ in wire.receive(1.0)] == [0x181, 0x182, 0x183]
 
 
-def test_a_forgotten_listener_hears_no_more() -> None:
+def test_a_removed_listener_gets_no_more_frames() -> None:
     wire = CanWire()
     node, other = Echo(wire, 0x80, 0x181), Echo(wire, 0x80, 0x182)
     wire.forget(0x80, node.on_frame)
@@ -91,7 +91,7 @@ def test_a_forgotten_listener_hears_no_more() -> None:
     assert (len(node.heard), len(other.heard)) == (0, 1)
 
 
-def test_receive_returns_only_what_has_arrived() -> None:
+def test_receive_returns_only_arrived_frames() -> None:
     wire = CanWire()
     wire.transmit(0x701, b"\x05", 0.010)
     wire.transmit(0x702, b"\x05", 0.020)
@@ -277,7 +277,7 @@ def send_cycle(wire: CanWire, frames: tuple[tuple[int, bytes], ...], now: float)
     wire.send_cycle(tuple(can_id for can_id, _ in frames), tuple(data for _, data in frames), now)
 
 
-def test_only_what_changed_of_a_cycle_is_handed_on_and_at_the_time_it_has_alone() -> None:
+def test_only_changed_frames_of_a_cycle_are_handed_on_at_their_own_times() -> None:
     wire, bare = CanWire(), CanWire()
     first, second = Taker(wire, 0x201), Taker(wire, 0x202)
     alone = Taker(bare, 0x202)

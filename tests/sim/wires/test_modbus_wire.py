@@ -117,7 +117,7 @@ def test_occupation_counts_characters_only() -> None:
     assert line.occupied_s == pytest.approx(31 * CHARACTER_S)
 
 
-def test_an_unplugged_adapter_raises_and_loses_what_was_under_way() -> None:
+def test_an_unplugged_adapter_raises_and_loses_pending_bytes() -> None:
     line, _ = wire()
     line.write(READ_NINE, 0.0)
     line.disconnect()
@@ -130,7 +130,7 @@ def test_an_unplugged_adapter_raises_and_loses_what_was_under_way() -> None:
     assert len(exchange(line, READ_NINE, 1.0)) == 1
 
 
-def test_it_tells_when_there_is_something_to_read() -> None:
+def test_it_reports_when_there_is_something_to_read() -> None:
     line, _ = wire()
     assert line.arrives_s == inf
     line.write(READ_NINE, 0.0)

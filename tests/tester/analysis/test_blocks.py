@@ -90,7 +90,7 @@ def test_a_gap_in_the_wheel_angle_ends_the_stretch() -> None:
     assert live(samples) == []
 
 
-def test_a_wheel_that_turns_backwards_counts_too() -> None:
+def test_a_wheel_that_turns_backwards_also_counts() -> None:
     assert len(live(turning(80, step_rev=-0.0283))) == 2
 
 

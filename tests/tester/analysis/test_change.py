@@ -28,7 +28,7 @@ def noisy(seed: int, levels: list[float]) -> list[float]:
 
 
 @pytest.mark.parametrize("at", [3, 10, 22, 40])
-def test_a_step_within_a_repeat_is_told_with_its_size(at: int) -> None:
+def test_a_step_within_a_repeat_is_reported_with_its_size(at: int) -> None:
     values = noisy(1, [1.0] * at + [1.15] * (45 - at))
     mean = (at + 1.15 * (45 - at)) / 45
     assert change_within(blocks(values, per_burst=15)) == pytest.approx(15.0 / mean, abs=1.5)
@@ -43,17 +43,17 @@ def test_steady_friction_shows_no_change_to_speak_of(seed: int) -> None:
     assert abs(change_within(blocks(noisy(seed, [1.0] * 45), per_burst=15))) < LIMIT_PERCENT
 
 
-def test_what_the_temperature_does_is_no_change() -> None:
+def test_an_effect_of_temperature_is_not_a_change() -> None:
     surface = [39.0 + 2.0 * i / 14 for i in range(15)]
     values = [0.7 * (1.0 - 0.025 * (surface[i % 15] - 40.0)) for i in range(45)]
     assert abs(change_within(blocks(values, per_burst=15, surface=surface))) < 1.0
 
 
-def test_too_few_blocks_tell_nothing() -> None:
+def test_too_few_blocks_give_no_result() -> None:
     assert isnan(change_within(blocks([0.7] * 5)))
 
 
-def test_a_step_that_is_left_out_as_a_transient_is_told() -> None:
+def test_a_step_left_out_as_a_transient_is_reported() -> None:
     result = reduce_repeat(blocks(noisy(3, [1.0] * 15 + [1.15] * 30)), WINDOW)
     assert result.truncated >= 14
     assert result.change_percent > 12.0
@@ -64,7 +64,7 @@ def test_a_change_of_no_slip_is_not_looked_for() -> None:
 
 
 @pytest.mark.parametrize("values", [[1.0, 1.15], [1.15, 1.0, 1.0], [1.0, 1.0, 1.15], [1.0, 1.01, 1.14, 1.16, 1.15]])
-def test_a_step_between_repeats_is_told(values: list[float]) -> None:
+def test_a_step_between_repeats_is_reported(values: list[float]) -> None:
     assert abs(change_between(values, REPEATABILITY)) > LIMIT_PERCENT
 
 

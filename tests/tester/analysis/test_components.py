@@ -36,7 +36,7 @@ def test_the_parts_add_up_to_the_dry_coefficient() -> None:
     assert parts.share.value == pytest.approx(0.6, rel=1e-12)
 
 
-def test_what_both_have_in_common_drops_out_of_the_difference() -> None:
+def test_common_errors_drop_out_of_the_difference() -> None:
     parts = by_film(result(2.0), result(1.2), NO_SLOPE)
     assert parts.adhesion.common["cell"][0] == pytest.approx(0.0, abs=1e-15)
     assert parts.adhesion.standard == pytest.approx(WEIGHTS_N * 0.8 / LOAD_N, rel=1e-9)
@@ -44,7 +44,7 @@ def test_what_both_have_in_common_drops_out_of_the_difference() -> None:
     assert parts.share.standard == pytest.approx(CELL_N / LOAD_N * (1.0 - 0.6) / 2.0, rel=1e-9)
 
 
-def test_what_is_each_ones_own_adds_in_squares() -> None:
+def test_individual_errors_add_in_squares() -> None:
     parts = by_film(result(2.0, 0.04), result(1.2, 0.03), NO_SLOPE)
     common = WEIGHTS_N * 0.8 / LOAD_N
     assert parts.adhesion.standard == pytest.approx(sqrt(0.05**2 + common**2), rel=1e-9)
@@ -70,13 +70,13 @@ def test_the_film_is_taken_to_the_temperature_of_the_dry_contact() -> None:
     assert parts.hysteresis.common[SENSITIVITY][0] == pytest.approx(expected, rel=1e-12)
 
 
-def test_what_the_film_is_off_by_goes_with_it_to_that_temperature() -> None:
+def test_the_error_of_the_film_is_carried_to_that_temperature() -> None:
     parts = by_film(result(2.0, at_c=33.0), result(1.2, 0.03, at_c=23.0), Slope(-0.05, 0.0, "known"))
     own = hypot(0.03, hypot(CELL_N, WEIGHTS_N * 1.2) / LOAD_N)
     assert parts.hysteresis.standard == pytest.approx(own * exp(-0.5), rel=1e-12)
 
 
-def test_a_sensitivity_is_taken_as_known_as_well_as_it_is_said_to_be() -> None:
+def test_a_sensitivity_has_its_stated_uncertainty() -> None:
     parts = by_film(result(2.0), result(1.2), UNKNOWN)
     assert parts.hysteresis.expanded == pytest.approx(1.96 * parts.hysteresis.standard, rel=1e-3)
 
@@ -86,7 +86,7 @@ def test_the_fewest_degrees_of_freedom_of_a_common_error_stand_in_a_mean() -> No
     assert mean_of(common).common["cell"][1] == 3.0
 
 
-def test_an_unknown_sensitivity_widens_what_differs_in_temperature() -> None:
+def test_an_unknown_sensitivity_widens_pairs_of_different_temperature() -> None:
     colder, same, warmer = (by_film(result(2.0, 0.02, at), result(1.2, 0.02), UNKNOWN) for at in (13.0, 23.0, 33.0))
     assert colder.share.value == same.share.value == warmer.share.value
     assert warmer.share.standard > 0.6 * 10.0 * UNKNOWN.u_per_kelvin > 5.0 * same.share.standard
@@ -100,19 +100,19 @@ def test_few_degrees_of_freedom_widen_the_expanded_uncertainty() -> None:
     assert few.expanded > 1.3 * many.expanded and few.standard == many.standard
 
 
-def test_without_a_budget_nothing_is_said_of_the_uncertainty() -> None:
+def test_without_a_budget_there_is_no_uncertainty() -> None:
     parts = by_film(result(2.0), replace(result(1.2), budget=budget([])), NO_SLOPE)
     assert parts.share.value == pytest.approx(0.6) and isnan(parts.share.expanded)
 
 
-def test_what_conditions_have_in_common_does_not_average_out() -> None:
+def test_common_errors_of_conditions_do_not_average_out() -> None:
     one = PartValue(0.6, ((0.03, inf),), {"cell": (0.04, inf)})
     found = mean_of([one] * 9)
     assert found.value == pytest.approx(0.6, rel=1e-12)
     assert found.standard == pytest.approx(hypot(0.01, 0.04), rel=1e-12)
 
 
-def test_the_mean_counts_what_is_certain() -> None:
+def test_the_mean_weights_by_certainty() -> None:
     known = [PartValue(0.5, ((0.01, inf),)), PartValue(0.6, ((0.1, inf),))]
     found = mean_of([*known, PartValue(9.0, ((float("nan"), 1.0),))])
     assert found.value == pytest.approx((0.5 * 100.0 + 0.6) / 101.0, rel=1e-12)
@@ -126,7 +126,7 @@ def test_conditions_that_truly_differ_weigh_alike_in_their_mean() -> None:
     assert found.standard == pytest.approx(0.001 / sqrt(3.0), rel=1e-9)  # all of these conditions are known
 
 
-def test_as_far_as_weights_are_unequal_what_conditions_differ_by_is_in_their_mean() -> None:
+def test_with_unequal_weights_differences_of_conditions_are_in_their_mean() -> None:
     apart = [PartValue(value, ((u, inf),)) for value, u in ((0.1, 0.001), (0.2, 0.002), (0.3, 0.1))]
     found, d = mean_of(apart), between(apart)
     weights = np.array([1.0 / (own[0][0] ** 2 + d**2) for own in (one.own for one in apart)])
@@ -138,7 +138,7 @@ def test_as_far_as_weights_are_unequal_what_conditions_differ_by_is_in_their_mea
     assert abs(found.value - 0.2) < found.expanded
 
 
-def test_what_conditions_differ_by_is_found_beside_their_uncertainties() -> None:
+def test_differences_of_conditions_are_found_beside_their_uncertainties() -> None:
     random = np.random.default_rng(4)
     drawn = [PartValue(0.1 + float(off), ((0.01, inf),)) for off in random.normal(0.0, np.hypot(0.03, 0.01), 2000)]
     assert between(drawn) == pytest.approx(0.03, rel=0.05)

@@ -71,7 +71,7 @@ def test_the_deformation_at_each_load_and_temperature_is_found(
 
 
 @pytest.mark.parametrize(("softening", "relaxation"), [(0.0, 0.0), (0.008, 0.0), (0.0, 0.05)])
-def test_rubber_of_another_kind_is_told_from_it(softening: float, relaxation: float) -> None:
+def test_another_kind_of_rubber_is_distinguished(softening: float, relaxation: float) -> None:
     found = [stiffness(contacts_of(pressed(seed, softening, relaxation))) for seed in range(3)]
     assert sum(holds(one.softening_per_k, softening) for one in found) >= 2
     assert sum(holds(one.relaxation, relaxation) for one in found) >= 2

@@ -34,7 +34,7 @@ def test_on_different_rigs_every_error_counts_twice() -> None:
     assert found.standard == pytest.approx(hypot(0.5, 0.5, 0.03, 0.04))
 
 
-def test_what_a_common_error_moves_by_differently_stays() -> None:
+def test_unequal_effects_of_a_common_error_stay() -> None:
     one, other = result(0.7, chain(0.01, 2.0), repeats(0.0)), result(0.8, chain(0.01, -1.0), repeats(0.0))
     assert difference(one, other, same_rig=True).standard == pytest.approx(0.03)
 
@@ -45,18 +45,18 @@ def test_an_error_that_only_one_has_counts() -> None:
     assert difference(other, one, same_rig=True).standard == pytest.approx(0.05)
 
 
-def test_the_degrees_of_freedom_are_those_of_what_is_left() -> None:
+def test_the_degrees_of_freedom_are_those_of_the_remaining_terms() -> None:
     found = difference(result(0.7, chain(9.0), repeats(0.03, 4)), result(0.8, chain(9.0), repeats(0.03, 4)),
                        same_rig=True)  # fmt: skip
     assert found.df == pytest.approx(8.0) and found.coverage == pytest.approx(2.306, abs=1e-3)
 
 
 @pytest.mark.parametrize(("value", "apart"), [(0.11, False), (-0.11, False), (0.12, True), (-0.12, True)])
-def test_a_difference_beyond_its_coverage_is_told(value: float, apart: bool) -> None:
+def test_a_difference_beyond_its_coverage_is_reported(value: float, apart: bool) -> None:
     assert Difference(value, 0.05, 8.0).told_apart is apart
 
 
-def test_without_a_coefficient_nothing_is_told() -> None:
+def test_without_a_coefficient_there_is_no_difference() -> None:
     found = difference(result(0.7, repeats(0.03)), ConditionResult(ConditionStatus.PENDING), same_rig=True)
     assert isnan(found.value) and not found.told_apart
 

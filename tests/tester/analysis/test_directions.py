@@ -12,7 +12,7 @@ from tester.analysis.results import RepeatStatus
 from tests.tester.analysis.pairs import refused, series
 
 
-def test_repeats_alternate_so_that_what_changes_evenly_drops_out_of_two_pairs() -> None:
+def test_repeats_alternate_so_that_a_steady_change_drops_out_of_two_pairs() -> None:
     assert [is_reversed(repeat) for repeat in range(1, 9)] == [False, True, True, False] * 2
     assert sum(-1 if is_reversed(repeat) else 1 for repeat in range(1, 5)) == 0
     assert sum(-repeat if is_reversed(repeat) else repeat for repeat in range(1, 5)) == 0
@@ -39,7 +39,7 @@ def test_friction_is_shown_by_half_the_difference_and_the_rest_by_the_mean() -> 
     assert pair.means["belt_speed_m_s"] == pytest.approx(0.8)
 
 
-def test_a_pair_with_a_refused_repeat_is_refused_and_says_which() -> None:
+def test_a_pair_with_a_refused_repeat_is_refused_and_names_it() -> None:
     results = series([0.7] * 4)
     results[2] = refused(results[2])
     first, second = as_pairs(results)

@@ -37,7 +37,7 @@ def test_a_drift_without_noise_is_found_exactly() -> None:
     assert found.stable and found.bound_percent == pytest.approx(1.5, rel=1e-3)
 
 
-def test_one_drift_stands_for_all_repeats() -> None:
+def test_all_repeats_share_one_drift() -> None:
     found = fit_drift([repeat(None, 0.01), repeat(None, -0.01)], Window(30))
     assert found.drift_percent == pytest.approx(0.0, abs=1e-6)
     assert [one.drift_percent for one in found.repeats] == pytest.approx([1.0, -1.0], rel=1e-3)

@@ -125,7 +125,7 @@ def test_a_first_repeat_that_is_refused_carries_over_a_later_one_does_not() -> N
     assert results[2].drifts and CARRY_OVER not in flags_in(found.flags)
 
 
-def test_what_stays_may_not_drift_the_way_of_what_was_refused() -> None:
+def test_the_rest_may_not_drift_like_the_refused_repeats() -> None:
     results, found = judged([repeat(1, -0.01), repeat(2, -0.05), repeat(3, -0.01), repeat(4, -0.01)])
     assert [result.drifts for result in results] == [False, True, False, False]
     assert CARRY_OVER in flags_in(found.flags)

@@ -64,7 +64,7 @@ def test_how_much_the_mean_of_the_closest_two_scatters() -> None:
     assert pstdev(means) == pytest.approx(left_out.CLOSEST_STANDARD, abs=0.012)
 
 
-def test_the_run_says_how_its_repeats_are_combined() -> None:
+def test_the_run_states_how_its_repeats_are_combined() -> None:
     assert combining_of({"combine": "paper"}) == "paper"
     assert combining_of({}) == combining_of({"combine": "other"}) == "mean"
 
@@ -73,7 +73,7 @@ GOOD = repeat(0.70)
 REFUSED = repeat(0.80, status=RepeatStatus.REFUSED)
 
 
-def test_what_is_left_out_is_what_was_made_and_is_not_valid() -> None:
+def test_the_left_out_repeats_are_the_invalid_ones() -> None:
     assert Counts(3, 5, 3).left_out == 2
 
 
@@ -89,7 +89,7 @@ def test_what_is_left_out_is_what_was_made_and_is_not_valid() -> None:
         (3, 2, (0,), ()),  # stopped before anything was made up
     ],
 )
-def test_a_make_up_stands_in_place_of_a_refused_one(
+def test_a_make_up_replaces_a_refused_repeat(
     asked: int, made: int, refused: tuple[int, ...], found: tuple[int, ...]
 ) -> None:
     assert make_ups_of(asked, made, refused) == found
@@ -107,11 +107,11 @@ def test_a_short_condition_lacks_make_ups() -> None:
     assert counts(GOOD, REFUSED, GOOD) == Counts(3, 3, 2)
 
 
-def test_what_a_person_leaves_out_is_left_out_and_has_no_make_up() -> None:
+def test_a_repeat_excluded_by_a_person_has_no_make_up() -> None:
     assert counts(GOOD, GOOD, GOOD, GOOD, by_hand={0: "dust"}) == Counts(3, 4, 3)
 
 
-def test_a_make_up_stays_one_when_a_person_leaves_out_what_it_stands_for() -> None:
+def test_a_make_up_stays_one_when_a_person_excludes_the_replaced_repeat() -> None:
     assert counts(GOOD, REFUSED, GOOD, GOOD, by_hand={1: "dust"}) == Counts(3, 4, 3, make_ups=(3,))
 
 
@@ -133,7 +133,7 @@ def test_half_a_pair_of_a_stopped_run_is_in_no_count_and_in_no_mean() -> None:
     assert [one.position for one in found.excluded] == [2]
 
 
-def test_replicates_are_what_is_counted_of_the_row_that_stands_for_them() -> None:
+def test_replicates_are_the_counted_repeats_of_their_row() -> None:
     measured = combine_repeats([GOOD] * 3, 3)
     failed = combine_repeats([REFUSED] * 3, 3, ended=ConditionStatus.OK)
     waiting = combine_repeats([], 3)

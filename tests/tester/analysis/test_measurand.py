@@ -160,7 +160,7 @@ def test_one_replicate_alone_has_the_stated_difference() -> None:
     assert standard(found.compound_budget, "wheel to wheel") == pytest.approx(0.03 * 0.70)
 
 
-def test_a_rig_that_says_no_terms_has_repeats_alone_for_both() -> None:
+def test_a_rig_without_terms_has_repeats_alone_for_both() -> None:
     found = with_budget(THREE, Surroundings(pool=BY.pool))
     assert found.budget.standard == found.compound_budget.standard == pytest.approx(0.70 * 0.02 / sqrt(3.0))
     assert found.mu == found.mu_resultant

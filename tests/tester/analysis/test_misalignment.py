@@ -28,7 +28,7 @@ def test_one_condition_of_three_pairs_knows_it_to_a_fifth_of_a_degree() -> None:
     assert fmean(size * size for size in sizes) ** 0.5 == pytest.approx(0.22, abs=0.02)
 
 
-def test_the_interval_of_a_session_holds_the_angle_as_often_as_it_says() -> None:
+def test_the_interval_of_a_session_contains_the_angle_at_its_stated_rate() -> None:
     random, hits = Random(2), 0
     for _ in range(400):
         found = misalignment(measured(random, mu, -0.35) for mu in (0.5, 0.7, 0.9, 1.3))
@@ -42,6 +42,6 @@ def test_more_conditions_know_it_better() -> None:
     assert many < 0.4 * few
 
 
-def test_conditions_of_one_direction_say_nothing_of_it() -> None:
+def test_conditions_of_one_direction_give_no_angle() -> None:
     assert misalignment([combine_repeats(series([0.7, 0.7, 0.7]), 3)]) == NOT_KNOWN
     assert isnan(NOT_KNOWN.expanded_deg)

@@ -64,7 +64,7 @@ def unit(number: str) -> float:
 
 
 @pytest.mark.parametrize(("path", "text"), [(STORED, items_text), (PAGE, table_text)], ids=["items", "page"])
-def test_what_is_stored_is_what_the_command_writes(path: Path, text: Callable[[Judged], str], result: Judged) -> None:
+def test_the_stored_page_matches_the_command(path: Path, text: Callable[[Judged], str], result: Judged) -> None:
     lines, stored = text(result).splitlines(), path.read_text(encoding="utf-8").splitlines()
     assert len(lines) == len(stored)
     assert [(a, b) for a, b in zip(lines, stored, strict=True) if not same(a, b)] == []
@@ -193,11 +193,11 @@ def test_a_verdict_is_worked_out_when_it_is_asked_for() -> None:
     assert "| P | 1 | 0 | 0 |" in first and "| P | 0 | 1 | 0 |" in second
 
 
-def test_what_is_not_attempted_has_its_reason() -> None:
+def test_an_unattempted_item_has_a_reason() -> None:
     assert not_attempted("Fig 1", "a drawing", "no numbers").work_out() == unjudged("no numbers")
     reasons = [item.work_out() for _, item in ITEMS if "not_attempted" in getattr(item.work_out, "__qualname__", "")]
     assert reasons and all(one.verdict is PaperVerdict.NOT_ATTEMPTED and len(one.error) > 10 for one in reasons)
 
 
-def test_differences_of_rounding_are_not_told_as_digits() -> None:
+def test_differences_of_rounding_are_not_reported_as_digits() -> None:
     assert (slight(3e-16), slight(2.4e-5)) == ("less than 1e-09", "2e-05")

@@ -78,7 +78,7 @@ def test_incomplete_beta_of_equal_shapes_is_a_half_in_the_middle() -> None:
 
 
 @pytest.mark.parametrize(("p", "df"), [(0.0, 5.0), (1.0, 5.0), (0.9, 0.4), (0.9, float("nan"))])
-def test_what_is_no_quantile_is_refused(p: float, df: float) -> None:
+def test_impossible_quantiles_are_refused(p: float, df: float) -> None:
     with pytest.raises(ValueError, match="quantile"):
         t_quantile(p, df)
 

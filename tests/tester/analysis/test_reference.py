@@ -63,12 +63,12 @@ def test_six_changes_are_enough_and_five_are_not() -> None:
     assert not found.apart and "cannot be told apart" in found.sentence("wheel")
 
 
-def test_on_one_piece_it_cannot_be_told_apart_however_many_references_there_are() -> None:
+def test_on_one_piece_the_drift_cannot_be_separated_by_any_number_of_references() -> None:
     found = drift_of(on_wheels(1, 30))
     assert not found.apart and "6 changes of the wheel or a reserved wheel" in found.sentence("wheel")
 
 
-def test_on_a_reserved_piece_it_is_told_apart() -> None:
+def test_on_a_reserved_piece_the_drift_is_separated() -> None:
     found = drift_of(on_wheels(1, 7), RESERVED)
     assert found.apart and found.changed_percent(2000.0)[0] == pytest.approx(-10.0, abs=1.0)
     assert "by a reserved wheel" in found.sentence("wheel")
@@ -76,7 +76,7 @@ def test_on_a_reserved_piece_it_is_told_apart() -> None:
     assert not few.apart and few.sentence("wheel").endswith("that takes 3 references")
 
 
-def test_what_the_piece_loses_is_not_taken_for_the_counterface_s() -> None:
+def test_the_loss_of_the_piece_is_not_attributed_to_the_counterface() -> None:
     slides = [replace(one, mu=one.mu * exp(-5e-4 * one.piece_m)) for one in on_wheels(9, 3)]
     low, high = drift_of(slides).changed_percent(2000.0)[1:]
     assert low < -10.0 < high
@@ -108,14 +108,14 @@ def test_the_scatter_of_the_pieces_that_were_measured_widens_the_interval() -> N
     assert drift_of(wild).standard > 1.5 * drift_of(on_wheels(8, 1)).standard
 
 
-def test_what_a_reserved_piece_may_lose_by_sliding_is_in_the_interval() -> None:
+def test_the_possible_loss_of_a_reserved_piece_is_in_the_interval() -> None:
     still = [replace(one, piece_m=0.0) for one in on_wheels(1, 7)]
     slid = [replace(one, piece_m=0.05 * one.counterface_m) for one in on_wheels(1, 7)]
     apart = drift_of(slid, RESERVED).standard ** 2 - drift_of(still, RESERVED).standard ** 2
     assert sqrt(apart) == pytest.approx(0.05 * PIECE_PER_M, rel=1e-3)
 
 
-def test_intervals_hold_the_loss_as_often_as_they_say() -> None:
+def test_intervals_contain_the_loss_at_their_stated_rate() -> None:
     held = 0
     for seed in range(200):
         low, high = drift_of(on_wheels(7, 2, off=Random(f"cover {seed}"))).changed_percent(2000.0)[1:]
@@ -123,7 +123,7 @@ def test_intervals_hold_the_loss_as_often_as_they_say() -> None:
     assert 0.89 * 200 <= held <= 0.995 * 200
 
 
-def test_nothing_is_said_of_too_little() -> None:
+def test_too_few_references_give_no_result() -> None:
     one, *_ = on_wheels(7)
     assert counterface_drift([one], KNOWN) is None
     assert counterface_drift([one, replace(one, number=2)], KNOWN) is None  # without travel between
@@ -146,13 +146,13 @@ def test_the_counterface_s_change_since_the_first_reference_is_a_term() -> None:
     assert found.contribution(0.7, 100.0).standard == 0.0
 
 
-def test_the_term_says_where_the_piece_has_a_part_in_it() -> None:
+def test_the_term_states_where_the_piece_contributes() -> None:
     found = CounterfaceDrift(-5e-5, 2e-5, 9.0, 0.0, 2000.0, 7, 1, apart=False)
     assert "the piece's part in it" in found.contribution(0.7, 1000.0).source
     assert "the piece's part in it" not in replace(found, apart=True).contribution(0.7, 1000.0).source
 
 
-def test_the_sentence_says_when_nothing_is_resolved() -> None:
+def test_the_sentence_states_when_nothing_is_resolved() -> None:
     found = CounterfaceDrift(-5e-5, 2e-5, 30.0, 0.0, 2000.0, 7, 7, apart=True)
     assert found.sentence("wheel") == (
         "counterface -9.5 % (-16.6 to -1.8 %, 95 %) over 2000 m of travel under load, by 7 wheels"

@@ -23,7 +23,7 @@ def test_where_pieces_were_changed_their_difference_is_in_the_limits() -> None:
     assert log(chart.high / chart.centre) == pytest.approx(3.0 * sqrt(2.0) * hypot(U, 0.03))
 
 
-def test_points_stand_in_their_order_with_what_lies_outside() -> None:
+def test_points_are_in_order_with_the_outliers() -> None:
     (chart,) = control_charts(on_wheels(1, 11), RESERVED)
     assert [point.number for point in chart.points] == list(range(1, 12))
     assert [point.within for point in chart.points] == [True] * 5 + [False] * 6 and not chart.kept

@@ -53,7 +53,7 @@ def error(of: SettingMeasurement, cause: str) -> ErrorPart:
 # -- common errors of measurements ------------------------------------------------------------------------------------
 
 
-def test_all_terms_of_the_compound_s_budget_are_there_with_what_shares_them() -> None:
+def test_all_terms_of_the_compound_s_budget_are_there_with_their_scopes() -> None:
     found = {one.cause: one.common for one in measured().errors}
     assert found.keys() == {one.name for one in with_budget(THREE, BY).compound_budget.contributions}
     assert found["axis misalignment"] == found[TEMPERATURE_SENSITIVITY] == RIG
@@ -74,7 +74,7 @@ def test_between_wheels_they_count_twice() -> None:
     assert difference_of(one, other).standard > sqrt(2.0) * 0.03 * THREE.mu_resultant
 
 
-def test_what_wears_off_between_two_measurements_on_a_wheel_is_left_of_its_diameter_s_error() -> None:
+def test_the_wear_between_two_measurements_on_a_wheel_remains_of_its_diameter_s_error() -> None:
     early, late = (measured(by=replace(BY, size=Size(90.0, loss_mm))) for loss_mm in (0.1, 0.4))
     own = sum(part.value**2 for part in (*early.errors, *late.errors) if not part.common)
     off = error(late, "diameter worn off").value - error(early, "diameter worn off").value
@@ -95,7 +95,7 @@ def test_an_unknown_sensitivity_counts_as_far_as_the_temperatures_differ() -> No
     assert sqrt(apart**2 - alike**2) == pytest.approx(2.0 * 0.02 * THREE.mu_resultant, rel=0.01)
 
 
-def test_what_the_counterface_has_changed_is_no_excuse() -> None:
+def test_a_change_of_the_counterface_is_no_excuse() -> None:
     drift = CounterfaceDrift(-1e-4, 1e-5, 8.0, 0.0, 1000.0, 3, 1, apart=False)
     blunt = replace(BY, drift=drift, travel_m=900.0)
     assert measured(by=blunt).errors == measured().errors
@@ -131,19 +131,19 @@ def test_wheels_that_differ_as_wheels_do_agree_and_one_wheel_that_changes_as_muc
     assert not judged((1.00, 1), (1.08, 1)).kept
 
 
-def test_the_value_that_stands_out_most_is_found() -> None:
+def test_the_greatest_outlier_is_found() -> None:
     found = judged((1.00, 1), (1.01, 1), (1.09, 1), (1.03, 2))
     assert not found.kept and found.outstanding == 2
     assert found.off[2] == pytest.approx(0.085, abs=0.003)
     assert found.off_standard[2] == pytest.approx(REPEATS * sqrt(1.5), rel=0.03)
 
 
-def test_of_two_values_neither_stands_out() -> None:
+def test_of_two_values_neither_is_an_outlier() -> None:
     assert judged((1.0, 1), (1.2, 1)).outstanding is None
 
 
 @pytest.mark.parametrize("unknown", [made(nan, 1), made(1.0, 1, repeats=nan)])
-def test_what_has_no_value_or_no_uncertainty_is_left_out(unknown: SettingMeasurement) -> None:
+def test_a_measurement_without_value_or_uncertainty_is_left_out(unknown: SettingMeasurement) -> None:
     assert agreement([unknown, made(1.0, 1)]) is None
     found = agreement([made(1.0, 1), unknown, made(1.0, 1)])
     assert found is not None and len(found.measurements) == 2

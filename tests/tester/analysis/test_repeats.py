@@ -86,7 +86,7 @@ def test_repeats_that_a_person_left_out_are_missed_below_the_least(
     assert result.ok and result.doubts == doubts
 
 
-def test_a_person_who_leaves_out_what_is_not_valid_makes_up_for_nothing() -> None:
+def test_excluding_an_invalid_repeat_replaces_nothing() -> None:
     poor = repeat(status=RepeatStatus.TOO_FEW, reason="3 of 30 revolutions")
     assert combine_repeats([*FIVE[:4], poor], 5, 3, by_hand={4: "the jacket was off"}).doubts == (SHORT,)
 
@@ -112,7 +112,7 @@ def test_one_valid_repeat_shows_its_mean_and_no_scatter() -> None:
     assert isnan(result.budget.expanded)
 
 
-def test_a_condition_left_early_without_a_value_keeps_what_the_run_said() -> None:
+def test_a_condition_left_early_without_a_value_keeps_the_reason_of_the_run() -> None:
     failed = repeat(status=RepeatStatus.CANNOT_HOLD, reason="warming 3 K/s")
     result = combine(failed, ended=ConditionStatus.CANNOT_HOLD, reason="warming 3 K/s")
     assert (result.status, result.reason) == (ConditionStatus.CANNOT_HOLD, "warming 3 K/s")
@@ -128,7 +128,7 @@ def test_a_condition_that_is_under_way_is_not_measured_yet() -> None:
     assert not combine().ok
 
 
-def test_repeats_that_all_could_not_hold_the_temperature_say_so_together() -> None:
+def test_repeats_that_all_missed_the_temperature_are_reported_together() -> None:
     failed = repeat(status=RepeatStatus.CANNOT_HOLD, reason="warming 3 K/s")
     result = combine(failed, failed, planned=2)
     assert (result.status, result.reason) == (ConditionStatus.CANNOT_HOLD, "warming 3 K/s")
@@ -145,7 +145,7 @@ def test_two_restless_repeats_are_excluded_one_after_the_other() -> None:
     assert combine(*results, planned=8).n_valid == 6
 
 
-def test_a_repeat_three_times_as_restless_as_its_siblings_needs_cochran_too() -> None:
+def test_a_repeat_three_times_as_noisy_as_its_siblings_also_needs_cochran() -> None:
     # C of 2.9 : 1 : 1 : 1 : 1 is beyond the critical value, the ratio is not beyond 3.
     assert excess_fluctuation([*FIVE[:4], repeat(fluctuation=2.9)]) is None
 

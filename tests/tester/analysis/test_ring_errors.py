@@ -42,7 +42,7 @@ def test_errors_at_any_angle_seldom_look_like_a_worn_place() -> None:
     assert said <= 2  # CHANCE allows at most one in a thousand
 
 
-def test_few_errors_say_nothing() -> None:
+def test_few_errors_are_no_evidence() -> None:
     few = sector_of([0.25 + turn for turn in range(LEAST_ERRORS - 1)])
     assert not few.found
     assert isnan(few.centre_deg)
@@ -76,5 +76,5 @@ def test_one_run_or_none_with_errors_has_no_trend() -> None:
 
 
 @pytest.mark.parametrize(("late", "says"), [(60, "grows"), (10, "no trend beyond chance"), (0, "falls")])
-def test_a_trend_is_told_in_words(late: int, says: str) -> None:
+def test_a_trend_is_reported_in_words(late: int, says: str) -> None:
     assert trend_of([(1000.0, 10_000, 10), (2000.0, 10_000, late)]).words.endswith(says)

@@ -95,7 +95,7 @@ def test_each_direction_has_a_drift_of_its_own_and_opposite_ones_cancel_in_the_m
     assert abs(drift) < 0.3 and NOT_SHOWN not in flags
 
 
-def test_a_direction_that_drifts_is_told_though_the_other_does_not() -> None:
+def test_a_direction_that_drifts_is_reported_though_the_other_does_not() -> None:
     assert NOT_SHOWN not in judged({}, 2.0)[1]
     _, flags, _ = judged(dict.fromkeys((0, 3, 4), 0.018), 2.0)
     assert NOT_SHOWN in flags_in(flags)

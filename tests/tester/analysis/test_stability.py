@@ -51,7 +51,7 @@ def test_a_sawtooth_of_temperature_is_no_transient() -> None:
     assert left_out(blocks(values, per_burst=10, surface=surface), Window(30)) == 0
 
 
-def test_what_comes_later_does_not_change_the_transient() -> None:
+def test_later_blocks_do_not_change_the_transient() -> None:
     values = settling(70)
     assert left_out(blocks(values[:45]), Window(30)) == left_out(blocks(values), Window(30))
     seconds = 30 * REVOLUTION_S

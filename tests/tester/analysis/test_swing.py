@@ -80,7 +80,7 @@ def test_steady_friction_does_not_swing(seed: int) -> None:
     assert swing_of(trace(seed=seed)).percent == 0.0
 
 
-def test_what_goes_with_the_turning_of_the_wheel_is_no_swing() -> None:
+def test_a_variation_with_the_angle_of_the_wheel_is_no_swing() -> None:
     assert swing_of(trace(of_order=0.03)).percent == 0.0
 
 
@@ -88,12 +88,12 @@ def test_much_that_goes_with_the_turning_may_hide_a_swing() -> None:
     assert isnan(swing_of(trace(of_order=0.10)).percent)
 
 
-def test_a_swing_beside_what_goes_with_the_turning_is_found() -> None:
+def test_a_swing_beside_a_variation_with_the_angle_is_found() -> None:
     found = swing_of(trace(0.10, 4.3, of_order=0.10))
     assert found.hz == pytest.approx(4.3, rel=0.05) and found.percent > LIMIT_PERCENT
 
 
-def test_contacts_that_are_too_short_tell_nothing() -> None:
+def test_contacts_that_are_too_short_give_no_result() -> None:
     assert isnan(swing_of(trace(0.10, contacts=10, contact_s=2.0)).percent)
 
 
@@ -104,16 +104,16 @@ def test_a_swing_that_is_fast_for_its_samples_has_a_frequency_and_no_amplitude()
 
 
 @pytest.mark.filterwarnings("error")
-def test_a_swing_whose_multiples_lie_beyond_what_samples_show_is_found() -> None:
+def test_a_swing_whose_multiples_lie_beyond_the_sampled_range_is_found() -> None:
     found = swing_of(trace(0.10, 8.0, rate_hz=20.0, contact_s=8.0))
     assert found.hz == pytest.approx(8.0, rel=0.05) and found.seen_percent > LIMIT_PERCENT
 
 
-def test_samples_that_come_too_slowly_tell_nothing() -> None:
+def test_samples_that_come_too_slowly_give_no_result() -> None:
     assert swing_of(trace(0.10, 1.0, rate_hz=3.0, contact_s=8.0)) == UNKNOWN
 
 
-def test_no_samples_tell_nothing() -> None:
+def test_no_samples_give_no_result() -> None:
     assert isnan(swing_of(Trace(QUANTITIES)).percent)
 
 
@@ -122,5 +122,5 @@ def test_long_contacts_are_looked_at_in_stretches() -> None:
     assert found.hz == pytest.approx(4.3, rel=0.05)
 
 
-def test_a_swing_is_unknown_unless_told() -> None:
+def test_a_swing_is_unknown_by_default() -> None:
     assert isnan(Swing().percent)

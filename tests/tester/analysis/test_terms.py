@@ -63,7 +63,7 @@ COMMON = {
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_what_shares_a_term_s_error_is_known(name: str) -> None:
+def test_the_scope_of_a_term_s_error_is_known(name: str) -> None:
     assert {one.name: one.common for one in contributions_of(TERMS, AT)}[name] == COMMON.get(name, "rig")
 
 
@@ -95,7 +95,7 @@ LEFT = {
 
 
 @pytest.mark.parametrize("name", EXPECTED)
-def test_both_directions_leave_of_a_term_what_turns_round_with_the_sliding(name: str) -> None:
+def test_both_directions_leave_the_part_of_a_term_that_reverses_with_the_sliding(name: str) -> None:
     assert found(BOTH)[name] == pytest.approx(LEFT.get(name, 1.0) * EXPECTED[name], rel=1e-9, abs=1e-15)
 
 
@@ -145,6 +145,6 @@ def test_a_setting_that_is_no_bound_is_refused(wrong: str) -> None:
         with_settings(TERMS, {"uncertainty.misalignment_deg": wrong})
 
 
-def test_a_distribution_that_nobody_knows_is_refused() -> None:
+def test_an_unknown_distribution_is_refused() -> None:
     with pytest.raises(ValueError, match="rectangular, U-shaped, normal"):
         Term("zero", Acts.NORMAL, 0.5, "N", "triangular", "[A]")

@@ -55,6 +55,6 @@ def test_the_expanded_repeatability_is_that_of_a_mean_of_n() -> None:
     assert pool.expanded_percent(4) == pytest.approx(2.776445 * 2.0 / 2.0, rel=1e-6)
 
 
-def test_a_single_value_says_nothing_about_repeatability() -> None:
+def test_a_single_value_gives_no_repeatability() -> None:
     assert Pool().with_condition([0.7]) == Pool()
     assert Pool().expanded_percent(5) == inf

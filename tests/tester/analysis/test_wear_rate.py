@@ -75,7 +75,7 @@ def test_a_condition_has_the_diameters_before_and_after_it() -> None:
     assert found.rate.rate == pytest.approx(RATE, rel=1e-3)
 
 
-def test_a_loss_below_the_resolution_says_so_by_an_interval_with_zero_in_it() -> None:
+def test_a_loss_below_the_resolution_has_an_interval_that_contains_zero() -> None:
     found = condition_wear([worn(0, rate=0.01), worn(1, rate=0.01)], 1)
     assert found is not None and not found.rate.resolved
 

@@ -20,14 +20,14 @@ AFTER_ONE = replace(
 WORN = Worn(90.0, 89.6, 100.0, (NEW, AFTER_GRINDING, AFTER_ONE))
 
 
-def test_without_a_check_the_loss_is_what_was_believed_by_then_and_not_at_the_end() -> None:
+def test_without_a_check_the_loss_is_the_estimate_at_that_time_not_at_the_end() -> None:
     piece = Worn(90.0, 88.0, 400.0)
     assert piece.size(100.0).loss_mm == pytest.approx(0.5)
     assert piece.size(400.0).loss_mm == pytest.approx(2.0)
     assert isnan(piece.size(100.0).checked_u_mm)
 
 
-def test_a_record_that_does_not_say_how_far_it_slid_has_the_loss_of_its_end() -> None:
+def test_a_record_without_sliding_distances_has_the_loss_of_its_end() -> None:
     assert Worn(90.0, 88.0, 400.0).size(nan).loss_mm == pytest.approx(2.0)
 
 
@@ -36,13 +36,13 @@ def test_between_two_checks_the_diameter_is_interpolated_over_the_sliding() -> N
     assert WORN.size(90.0).size_mm == pytest.approx(89.64)
 
 
-def test_what_the_belief_was_off_by_at_the_next_check_is_in_the_uncertainty_in_proportion() -> None:
+def test_the_error_of_the_estimate_at_the_next_check_is_in_the_uncertainty_in_proportion() -> None:
     apart = hypot(U, 0.5 * U, 0.5 * U, 0.5 * 0.03)  # the series' first check, both checks by halves, half of the error
     assert WORN.size(75.0).checked_u_mm == pytest.approx(apart)
     assert WORN.size(50.0).checked_u_mm == pytest.approx(hypot(U, U))
 
 
-def test_a_record_that_does_not_say_the_belief_is_given_all_that_wore_off_between_checks() -> None:
+def test_a_record_without_estimates_gets_the_whole_loss_between_checks_as_uncertainty() -> None:
     unsaid = replace(WORN, checks=(NEW, AFTER_GRINDING, replace(AFTER_ONE, expected_mm=nan)))
     assert unsaid.size(75.0).checked_u_mm == pytest.approx(hypot(U, 0.5 * U, 0.5 * U, 0.5 * 0.2))
 
@@ -61,12 +61,12 @@ def test_after_a_single_check_all_that_is_believed_to_be_worn_off_since_is_uncer
     assert piece.size(100.0).checked_u_mm == pytest.approx(0.4)
 
 
-def test_a_series_that_began_on_a_worn_piece_carries_what_was_only_believed_by_then() -> None:
+def test_a_series_that_began_on_a_worn_piece_carries_the_loss_estimated_before_it() -> None:
     late = replace(NEW, diameter_mm=89.5, sliding_m=50.0, exposure_n_m=1e4)
     assert Worn(90.0, 89.5, 50.0, (late,)).size(50.0).checked_u_mm == pytest.approx(0.5)
 
 
-def test_the_rate_of_a_series_tells_how_much_was_worn_off_before_it() -> None:
+def test_the_rate_of_a_series_gives_the_loss_before_it() -> None:
     late = replace(NEW, diameter_mm=89.9, sliding_m=50.0, exposure_n_m=1e4)
     checks = tuple(
         replace(late, t_s=10.0 + i, diameter_mm=89.9 - 0.3 * i, sliding_m=50.0 * (i + 1), exposure_n_m=1e4 * (i + 1))
@@ -76,7 +76,7 @@ def test_the_rate_of_a_series_tells_how_much_was_worn_off_before_it() -> None:
     assert found.checked_u_mm == pytest.approx(0.2, rel=0.05)  # 0.3 mm before it, and 0.1 mm assumed
 
 
-def test_a_wheel_that_was_put_back_keeps_what_its_earlier_checks_knew() -> None:
+def test_a_remounted_wheel_keeps_the_results_of_its_earlier_checks() -> None:
     again = replace(AFTER_ONE, t_s=2000.0, reference_s=2000.0, expected_mm=nan, exposure_n_m=0.0)
     found = replace(WORN, checks=(*WORN.checks, again)).size(100.0)
     assert found.checked_u_mm == pytest.approx(hypot(U, U), rel=1e-6)

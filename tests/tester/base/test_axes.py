@@ -17,11 +17,11 @@ OFF: dict[str, AxisValue] = {
 }  # fmt: skip
 
 
-def test_the_paper_s_conditions_are_told_without_camber_and_wheel_speed() -> None:
+def test_the_paper_s_conditions_are_described_without_camber_and_wheel_speed() -> None:
     assert condition_words(HELD) == "1#, 300 mm/s, 200 N, 40 degC"
 
 
-def test_every_axis_off_its_default_is_told() -> None:
+def test_every_axis_off_its_default_is_described() -> None:
     text = condition_words(HELD.but(**OFF))
     assert text == "1#, -200 mm/s, 250 N, sideslip 10 deg, camber 5 deg, 55 degC, wheel 1 m/s, on corundum 80"
 
@@ -40,12 +40,12 @@ def test_a_float_s_last_digits_are_no_words() -> None:
     assert condition_words(HELD.but(slip_velocity=-0.0)).startswith("1#, 0 mm/s")
 
 
-def test_a_list_tells_of_each_what_differs_and_the_rest_once() -> None:
+def test_a_list_describes_the_differences_of_each_and_the_rest_once() -> None:
     words = ListWords([HELD, HELD.but("2#", camber=5.0)])
     assert words.of(HELD) == "1#, camber 0 deg" and words.common == "300 mm/s, 200 N, 40 degC"
 
 
-def test_the_only_condition_of_a_list_is_told_whole() -> None:
+def test_the_only_condition_of_a_list_is_described_in_full() -> None:
     assert ListWords([HELD]).of(HELD) == condition_words(HELD) and ListWords([HELD]).common == ""
 
 
@@ -78,7 +78,7 @@ def test_an_axis_may_have_choices_instead_of_numbers() -> None:
 
 
 @pytest.mark.parametrize("axes", [AXES, TRACK], ids=["wheel", "track"])
-def test_a_table_comes_back_from_plain_data_and_tells_in_the_same_words(axes: Axes) -> None:
+def test_a_table_read_from_plain_data_uses_the_same_words(axes: Axes) -> None:
     back = axes_from(json.loads(json.dumps(axes.as_data())))
     assert back == axes and back.as_data() == axes.as_data() and back.nested == axes.nested
 

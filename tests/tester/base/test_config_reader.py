@@ -93,7 +93,7 @@ def test_a_missing_key_takes_the_default_of_the_dataclass() -> None:
     assert outer("wheel_speed: 1").inner == Inner(200.0)
 
 
-def test_a_missing_key_without_default_is_a_problem_that_says_what_is_expected() -> None:
+def test_a_missing_key_without_default_is_a_problem_that_names_the_expected_form() -> None:
     assert problems("counts: 1") == [
         'rig.yaml:1:1: wheel_speed is missing (expected a speed such as "0.8 m/s"; units accepted: m/s, mm/s)'
     ]
@@ -119,11 +119,11 @@ def test_the_name_with_its_suffix_is_not_a_key() -> None:
     assert 'unknown key "wheel_speed_m_s", did you mean wheel_speed?' in problem
 
 
-def test_what_the_dataclass_itself_refuses_is_a_problem_at_its_section() -> None:
+def test_a_refusal_of_the_dataclass_itself_is_a_problem_at_its_section() -> None:
     assert problems("wheel_speed: 1\ninner:\n  load: 13 N") == ["rig.yaml:3:3: inner: 13 N is unlucky"]
 
 
-def test_every_problem_is_told_at_once() -> None:
+def test_every_problem_is_reported_at_once() -> None:
     assert len(problems("wheel_speed: 1 N\nshare: x\ninner: {load: -1}\nmode: torque\nfoo: 1")) == 5
 
 

@@ -38,7 +38,7 @@ def other(tmp_path: Path) -> subprocess.Popen[str]:
     process.communicate()
 
 
-def test_a_second_process_is_refused_and_told_who_holds_the_rig(tmp_path: Path, other: subprocess.Popen[str]) -> None:
+def test_a_second_process_is_refused_with_the_holder_of_the_rig(tmp_path: Path, other: subprocess.Popen[str]) -> None:
     with pytest.raises(RigInUseError) as refused:
         ExclusiveUse(tmp_path).lock(["can socketcan:can0"], "another")
     text = str(refused.value)
@@ -46,7 +46,7 @@ def test_a_second_process_is_refused_and_told_who_holds_the_rig(tmp_path: Path, 
     assert f"process {other.pid} of user " in text and " since 20" in text and text.endswith("for table 2")
 
 
-def test_who_is_refused_leaves_the_holders_words_as_they_are(tmp_path: Path, other: subprocess.Popen[str]) -> None:
+def test_a_refused_process_leaves_the_holders_text_unchanged(tmp_path: Path, other: subprocess.Popen[str]) -> None:
     for _ in range(2):
         with pytest.raises(RigInUseError, match=f"process {other.pid} of user .* for table 2"):
             ExclusiveUse(tmp_path).lock(["can socketcan:can0"], "another")
@@ -96,7 +96,7 @@ def test_another_rig_is_free(tmp_path: Path, other: subprocess.Popen[str]) -> No
         assert taken(tmp_path, "can socketcan:can1")
 
 
-def test_nothing_is_kept_of_a_rig_of_which_one_bus_is_taken(tmp_path: Path, other: subprocess.Popen[str]) -> None:
+def test_no_lock_is_kept_of_a_rig_with_a_taken_bus(tmp_path: Path, other: subprocess.Popen[str]) -> None:
     use = ExclusiveUse(tmp_path)
     with pytest.raises(RigInUseError), use:
         use.lock(["a line", "can socketcan:can0"], "another")
@@ -113,7 +113,7 @@ def test_a_lock_file_that_does_not_last_goes_with_its_holder(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("text", ["", "[]", '{"pid": "x"}', "\x00\x01", '{"pid": 12'])
-def test_a_lock_file_that_says_nothing_still_locks(tmp_path: Path, text: str) -> None:
+def test_an_empty_lock_file_still_locks(tmp_path: Path, text: str) -> None:
     (tmp_path / ".lock").write_text(text)
     assert user_of(tmp_path / ".lock") is None
     with ExclusiveUse() as use:

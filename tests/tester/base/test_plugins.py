@@ -59,7 +59,7 @@ def test_an_extension_is_found_by_entry_point_and_by_dotted_name(acme: Path, nam
     assert Plugins().load("laws", name) == "a law"
 
 
-def test_what_was_loaded_is_on_record(acme: Path) -> None:
+def test_loaded_extensions_are_on_record(acme: Path) -> None:
     found = Plugins()
     found.load("laws", "acme_law")
     (loaded,) = found.loaded
@@ -110,19 +110,19 @@ def test_a_path_is_refused(acme: Path, name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "a b", "acme law:LAW", "acme.law:", ":LAW", "os:system()", "..x:y"])
-def test_what_is_no_name_is_refused(acme: Path, name: str) -> None:
+def test_invalid_names_are_refused(acme: Path, name: str) -> None:
     with pytest.raises(PluginError, match="is no name of an extension"):
         Plugins().load("laws", name)
 
 
 @pytest.mark.parametrize("name", ["acme_law", "acme.law:LAW", "os:getcwd"])
-def test_what_the_start_did_not_allow_is_refused_with_what_allows_it(acme: Path, name: str) -> None:
+def test_an_extension_not_allowed_at_start_is_refused_with_the_remedy(acme: Path, name: str) -> None:
     with pytest.raises(PluginError, match=r"not allowed here \(allowed: other\).*tester serve --allow ") as refused:
         Plugins(allowed=["other"]).load("laws", name)
     assert name in str(refused.value)
 
 
-def test_what_the_start_allowed_is_loaded(acme: Path) -> None:
+def test_an_extension_allowed_at_start_is_loaded(acme: Path) -> None:
     assert Plugins(allowed=["acme_law"]).load("laws", "acme_law") == "a law"
 
 
@@ -135,12 +135,12 @@ def test_an_unknown_name_is_refused_with_those_that_are_declared(acme: Path) -> 
     ("name", "why"),
     [("acme.law:NONE", "no attribute 'NONE'"), ("acme.no:LAW", "No module named 'acme.no'"), ("nobody:LAW", "nobody")],
 )
-def test_what_cannot_be_loaded_says_why(acme: Path, name: str, why: str) -> None:
+def test_a_failed_load_names_its_reason(acme: Path, name: str, why: str) -> None:
     with pytest.raises(PluginError, match=rf"\({name}\) cannot be loaded: .*{why}"):
         Plugins().load("laws", name)
 
 
-def test_a_profile_that_its_package_does_not_carry_says_so(acme: Path) -> None:
+def test_a_profile_missing_from_its_package_is_reported(acme: Path) -> None:
     with pytest.raises(PluginError, match=r"\(acme:none\) cannot be loaded: .*none\.toml"):
         Plugins().text("profiles", "acme:none", ".toml")
 
@@ -152,7 +152,7 @@ def test_a_name_that_two_packages_declare_is_refused_and_both_are_named(acme: Pa
 
 
 @pytest.mark.parametrize(("said", "allowed"), [(None, None), ("", set()), ("one, two:x", {"one", "two:x"})])
-def test_the_environment_says_what_this_process_may_load(
+def test_the_environment_limits_what_this_process_may_load(
     said: str | None, allowed: set[str] | None, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     if said is not None:
@@ -217,7 +217,7 @@ def test_a_shared_catalogue_without_its_driver_names_its_extra(
         open_catalogue(tmp_path, "postgresql://nobody@127.0.0.1:1/none")
 
 
-def test_a_record_says_which_library_was_not_there(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_record_names_the_missing_library(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(provenance, "LIBRARIES", ("click", "no-such-distribution"))
     versions = provenance.library_versions()
     assert versions["no-such-distribution"] == "not installed" and versions["click"][0].isdigit()

@@ -61,7 +61,7 @@ def test_a_hang_up_is_handled() -> None:
 
 
 @posix
-def test_a_process_that_ignores_hang_ups_goes_on_ignoring_them() -> None:
+def test_a_process_that_ignores_hang_ups_keeps_ignoring_them() -> None:
     signal.signal(HANG_UP, signal.SIG_IGN)
     heard = Heard()
     with handled(heard):
@@ -77,7 +77,7 @@ def test_the_handlers_of_before_come_back() -> None:
 
 
 @posix
-def test_a_process_started_meanwhile_ignores_what_its_parent_hears() -> None:
+def test_a_process_started_meanwhile_ignores_the_signals_of_its_parent() -> None:
     with not_inherited():
         assert signal.getsignal(signal.SIGINT) is signal.getsignal(HANG_UP) is signal.SIG_IGN
     assert signal.getsignal(HANG_UP) is signal.SIG_DFL
@@ -114,7 +114,7 @@ def test_it_is_granted_for_a_time_or_refused_with_a_reason() -> None:
 
 
 @linux
-def test_where_it_is_refused_the_process_goes_on_as_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_where_it_is_refused_the_process_continues_unchanged(monkeypatch: pytest.MonkeyPatch) -> None:
     def refuse(*_: object) -> None:
         raise PermissionError(1, "Operation not permitted")
 

@@ -33,13 +33,13 @@ def test_means_are_in_the_order_of_their_places() -> None:
     assert [one.name for one in table(FORCE, LOAD, WAY).averaged] == ["load_n", "force_n"]
 
 
-def test_what_is_worked_out_for_screens_is_not_recorded() -> None:
+def test_values_computed_for_screens_are_not_recorded() -> None:
     made = table(FORCE, LOAD, WAY, SPEED)
     assert "speed_m_s" not in made.names
     assert made["speed_m_s"] is SPEED
 
 
-def test_a_value_is_told_in_the_unit_that_people_read() -> None:
+def test_a_value_is_shown_in_its_display_unit() -> None:
     assert SPEED.scaled(0.25) == 250.0
     assert SPEED.read_as == "mm/s"
     assert SPEED.measured_column == "measured_speed_mm_s"

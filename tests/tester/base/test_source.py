@@ -88,7 +88,7 @@ def test_every_value_and_key_has_its_position() -> None:
     assert tree.position(("b", 1, "d", 1)) == (4, 19)
 
 
-def test_what_is_not_there_has_the_position_of_what_is_nearest_above() -> None:
+def test_a_missing_key_has_the_position_of_its_nearest_parent() -> None:
     assert load_tree("a:\n  b: 1\n").position(("a", "c", 3)) == (2, 3)
 
 
@@ -98,7 +98,7 @@ def test_windows_line_ends_and_a_byte_order_mark_do_not_move_positions() -> None
     assert tree.position(("b",)) == (2, 4)
 
 
-def test_a_file_is_called_what_the_caller_calls_it(tmp_path: Path) -> None:
+def test_a_file_has_the_name_that_the_caller_uses(tmp_path: Path) -> None:
     file = tmp_path / "r.yaml"
     file.write_text("a: {", encoding="utf-8")
     with pytest.raises(InvalidSource) as raised:
@@ -148,7 +148,7 @@ def test_a_file_is_called_what_the_caller_calls_it(tmp_path: Path) -> None:
     ],
 )
 @pytest.mark.usefixtures("parser")
-def test_yaml_beyond_our_rules_is_refused_where_it_stands(text: str, problem: str) -> None:
+def test_yaml_beyond_our_rules_is_refused_with_its_position(text: str, problem: str) -> None:
     assert refused(text) == [problem]
 
 
@@ -294,7 +294,7 @@ def test_an_unknown_key_is_reported_at_the_key_with_the_nearest_valid_one() -> N
     ]
 
 
-def test_a_missing_key_is_reported_where_it_is_missing_with_what_is_expected() -> None:
+def test_a_missing_key_is_reported_where_it_is_missing_with_the_expected_form() -> None:
     assert validated("name: a\ninner:\n  repeats: 2\n") == [
         'f.yaml:2:1: load is missing (expected a force such as "200 N"; units accepted: N, kN)'
     ]
@@ -342,7 +342,7 @@ def read_by(loader: str, text: str) -> tuple[object, ...] | None:
 
 @given(st.lists(st.sampled_from(PIECES), max_size=25).map("".join))
 @settings(max_examples=300, deadline=None)
-def test_both_parsers_read_the_same_in_what_both_read(text: str) -> None:
+def test_both_parsers_agree_on_texts_that_both_read(text: str) -> None:
     by_libyaml, by_pyyaml = read_by("CSafeLoader", text), read_by("SafeLoader", text)
     if by_libyaml is not None and by_pyyaml is not None:
         (data, _, *others), (same, _, *same_others) = by_libyaml, by_pyyaml

@@ -18,7 +18,7 @@ def test_it_names_the_file_why_and_what_to_do(tmp_path: Path) -> None:
     assert in_words(caught.value).startswith(expected)
 
 
-def test_a_folder_in_place_of_a_file_is_said(tmp_path: Path) -> None:
+def test_a_folder_in_place_of_a_file_is_reported(tmp_path: Path) -> None:
     with pytest.raises(OSError) as caught:
         tmp_path.open("w")
     assert in_words(caught.value) == f"{tmp_path}: it is a folder, and a file is wanted: name a file"

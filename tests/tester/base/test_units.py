@@ -62,7 +62,7 @@ UNITS = [
         (".5 s", "s", 0.5),
     ],
 )
-def test_a_quantity_has_exactly_the_value_it_says(text: str, unit: str, value: float) -> None:
+def test_a_quantity_has_exactly_its_stated_value(text: str, unit: str, value: float) -> None:
     assert parse(text, unit) == value
 
 
@@ -88,7 +88,7 @@ def test_radians_convert_to_degrees() -> None:
         ("9" * 100 + " N", "N", "too long"),
     ],
 )
-def test_what_is_not_a_quantity_is_refused_with_the_reason(text: str, unit: str, said: str) -> None:
+def test_a_text_that_is_not_a_quantity_is_refused_with_the_reason(text: str, unit: str, said: str) -> None:
     with pytest.raises(UnitError) as raised:
         parse(text, unit)
     assert said in str(raised.value)
@@ -107,7 +107,7 @@ def test_the_example_in_a_message_is_itself_accepted(unit: str) -> None:
     assert isinstance(parse(example, unit), float)
 
 
-def test_one_of_several_kinds_tells_which_it_was() -> None:
+def test_a_quantity_of_several_kinds_keeps_its_kind() -> None:
     assert parse_one_of("30 rev", ("rev", "s")) == (30.0, "rev")
     assert parse_one_of("1 min", ("rev", "s")) == (60.0, "s")
 
@@ -161,7 +161,7 @@ def test_a_bare_number_counts_in_the_unit_where_that_is_allowed() -> None:
 
 
 @pytest.mark.parametrize("value", [True, None, ["1 s"], {"s": 1}, float("nan"), float("inf")])
-def test_what_is_no_number_is_refused_even_where_bare_numbers_are_allowed(value: object) -> None:
+def test_not_a_number_is_refused_even_where_bare_numbers_are_allowed(value: object) -> None:
     with pytest.raises(ValidationError):
         Model.model_validate({"period": value})
 
@@ -181,7 +181,7 @@ def test_json_has_quantities_as_a_file_has_them() -> None:
     assert Model().model_dump(mode="json") == {"speed": "0.8 m/s", "period": 1.0, "share": 0.5}
 
 
-def test_the_schema_tells_editors_the_form() -> None:
+def test_the_schema_gives_editors_the_form() -> None:
     properties = Model.model_json_schema()["properties"]
     assert properties["speed"]["type"] == "string"
     assert {"type": "number"} in properties["period"]["anyOf"]
@@ -220,6 +220,6 @@ def test_units_without_factors_are_refused(wrong: dict[str, float]) -> None:
         units.add_kind("a viscosity", "1 P", wrong)
 
 
-def test_a_unit_that_the_table_lacks_is_named_with_what_is_there_and_how_to_add_one() -> None:
+def test_a_missing_unit_is_named_with_the_known_ones_and_how_to_add_one() -> None:
     with pytest.raises(UnitError, match=r'mine: the unit "mm/ss".*did you mean.*expected one of m/s.*add_kind'):
         units.known_unit("mm/ss", "mine")

@@ -24,7 +24,7 @@ def test_a_key_that_is_missing_besides_stays_a_problem() -> None:
 
 
 @pytest.mark.parametrize(("text", "how"), [("1e400 N", "large"), ("-1e400 N", "large"), ("1e-400 N", "small")])
-def test_a_number_beyond_every_range_says_so(text: str, how: str) -> None:
+def test_a_number_beyond_every_range_is_reported_as_such(text: str, how: str) -> None:
     with pytest.raises(UnitError, match=f"is too {how} "):
         parse(text, "N")
 
@@ -46,12 +46,12 @@ def test_a_missing_key_is_suggested_before_one_that_is_nearer_in_spelling() -> N
     ("key", "meant"),
     [("angle: 5 deg", "sideslip or camber"), ("repeat: 3", "repeats"), ("sidesilp: 5 deg", "sideslip")],
 )
-def test_a_key_is_known_by_its_spelling_or_by_what_its_quantity_is_called(key: str, meant: str) -> None:
+def test_a_key_is_recognised_by_its_spelling_or_the_name_of_its_quantity(key: str, meant: str) -> None:
     said = _unknown_of(SMALL.replace("    slip_velocity:", f"    {key}\n    slip_velocity:"))
     assert said == [f'unknown key "{key.partition(":")[0]}", did you mean {meant}?']
 
 
-def test_a_key_of_another_section_is_told_where_it_goes() -> None:
+def test_a_key_of_another_section_is_reported_with_its_section() -> None:
     assert _unknown_of(f"sideslip: 5 deg\n{SMALL}") == ['unknown key "sideslip" here: it goes into grids']
 
 

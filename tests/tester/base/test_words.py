@@ -52,7 +52,7 @@ def test_conditions_done_are_counted_in_words_and_in_short() -> None:
     ("seconds", "text"),
     [(0.0, "0 s"), (45.4, "45 s"), (99.0, "99 s"), (240.0, "4 min"), (5340.0, "89 min"), (11_100.0, "3 h 05 min")],
 )
-def test_a_rough_duration_is_as_people_say_it(seconds: float, text: str) -> None:
+def test_a_rough_duration_is_in_everyday_words(seconds: float, text: str) -> None:
     assert rough_duration(seconds) == text
 
 
@@ -78,15 +78,15 @@ STEERING = ("\x1b[31m", "\x00", "\x7f", "\x9b", "\u202e", "\u2066", "\u200b", "\
 
 
 @pytest.mark.parametrize("text", ["", "A. Person", "Ødegård: µ = 0,7 €", "山田太郎", "no-break\u00a0space", "🙂"])
-def test_what_people_write_in_a_line_is_taken_as_it_is(text: str) -> None:
+def test_text_on_one_line_is_taken_unchanged(text: str) -> None:
     assert plain_text(text, "operator") == text
 
 
 @pytest.mark.parametrize("bad", STEERING)
-def test_what_could_steer_a_terminal_is_refused_with_what_and_where(bad: str) -> None:
+def test_text_that_could_control_a_terminal_is_refused_with_the_character_and_its_place(bad: str) -> None:
     with pytest.raises(ValueError, match=rf"^reason: the character U\+{ord(bad[0]):04X}, number 4, is not accepted"):
         plain_text(f"ab {bad}", "reason")
 
 
-def test_what_is_shown_anyway_steers_nothing_and_keeps_its_lines() -> None:
+def test_escaped_text_controls_nothing_and_keeps_its_lines() -> None:
     assert harmless("a\x1b[31m\tb\nc\r") == "a?[31m\tb\nc?"

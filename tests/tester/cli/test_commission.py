@@ -99,7 +99,7 @@ def test_a_word_that_is_no_answer_is_asked_for_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("key", [b"\x18", b"\x1b[24~", b"\x06"])
-def test_a_stop_key_stops_while_a_question_stands(tmp_path: Path, key: bytes) -> None:
+def test_a_stop_key_stops_while_a_question_is_open(tmp_path: Path, key: bytes) -> None:
     bench, person = at_keys(tmp_path, "jog belt")
     put = person.put
 
@@ -117,17 +117,17 @@ def test_a_stop_key_stops_while_a_question_stands(tmp_path: Path, key: bytes) ->
     assert bench.world is not None and not any(drive.energised for drive in bench.world.axes.values())
 
 
-def test_nobody_at_the_terminal_is_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_missing_terminal_is_reported(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert invoke(["commission", "sim", "--out", str(tmp_path)]) == 2
     assert "no interactive terminal" in capfd.readouterr().err
 
 
-def test_a_compound_that_the_twin_has_no_model_of_is_said(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_a_compound_without_a_model_on_the_twin_is_reported(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert invoke(["commission", "sim", "--yes", "--compound", "mine", "--out", str(tmp_path)]) == 2
     assert "expected 1#, 2#, 3#" in capfd.readouterr().err
 
 
-def test_the_list_says_what_is_to_be_done(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+def test_the_list_names_the_tasks(tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
     assert invoke(["commission", "sim", "--list", "--out", str(tmp_path)]) == 0
     assert "jog wheel        to be done" in capfd.readouterr().out
 

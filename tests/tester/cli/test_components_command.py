@@ -24,7 +24,7 @@ def data(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
     return json.loads(capsys.readouterr().out)
 
 
-def test_each_pair_has_its_parts_with_what_is_assumed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_pair_has_its_parts_with_the_assumptions(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = split_run(tmp_path / "one")
     found = data(capsys, "components", str(run))
     assert len(found["conditions"]) == 6 and len(found["means"]) == 1
@@ -36,7 +36,7 @@ def test_each_pair_has_its_parts_with_what_is_assumed(tmp_path: Path, capsys: py
     assert "takes all adhesion away" in found["assumed"][0]
 
 
-def test_people_are_told_a_table_and_the_mean(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_people_get_a_table_and_the_mean(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     run = split_run(tmp_path / "one", ("dry", "wet", "talc"))
     assert invoke(["components", str(run)]) == 0
     told = capsys.readouterr().out.splitlines()
@@ -45,7 +45,7 @@ def test_people_are_told_a_table_and_the_mean(tmp_path: Path, capsys: pytest.Cap
     assert any(line.startswith("assumed: the film") for line in told)
 
 
-def test_conditions_measured_once_have_no_uncertainty_and_it_is_said(
+def test_conditions_measured_once_have_no_uncertainty_and_the_output_states_it(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     run = split_run(tmp_path / "one", repeats=1)

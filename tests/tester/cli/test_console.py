@@ -129,7 +129,7 @@ def test_texts_from_outside_are_no_markup(capsys: Output) -> None:
     assert capsys.readouterr().err == "[bold red]x[/]\n"
 
 
-def test_nobody_can_be_asked_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_without_a_terminal_no_question_can_be_asked(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO())
     assert not Console(as_json=False, answer_yes=False).can_ask
 
@@ -148,14 +148,14 @@ def test_a_mistake_can_be_taken_back(keyboard: Typed) -> None:
     assert answered(keyboard, "yex\x7fs\r")[0] == "yes"
 
 
-def test_what_was_typed_before_the_question_does_not_count(keyboard: Typed) -> None:
+def test_keys_typed_before_the_question_do_not_count(keyboard: Typed) -> None:
     console, prompts = asking()
     keyboard.waiting = "yes\n"
     console.attend(prompts)
     assert console.commands() == [] and prompts.asked[0].answer is None
 
 
-def test_both_stops_and_hold_work_while_a_question_stands_and_letters_are_its_own(keyboard: Typed) -> None:
+def test_both_stops_and_hold_work_while_a_question_is_open_and_letters_go_to_it(keyboard: Typed) -> None:
     assert answered(keyboard, "yr\x18 \x06") == (None, ["stop", "hold", "fast stop"])
 
 
@@ -194,7 +194,7 @@ class Broken(io.StringIO):
         raise BrokenPipeError(32, "Broken pipe")
 
 
-def test_what_is_not_read_any_more_is_an_error_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_closed_reader_is_an_error_once(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(sys, "stdout", broken := Broken())
     console = Console(as_json=True, answer_yes=True)
     with pytest.raises(BrokenPipeError):
@@ -203,7 +203,7 @@ def test_what_is_not_read_any_more_is_an_error_once(monkeypatch: pytest.MonkeyPa
     assert broken.tries == 1
 
 
-def test_people_are_still_told_when_nobody_reads_the_data(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+def test_messages_still_appear_when_the_data_have_no_reader(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
     monkeypatch.setattr(sys, "stdout", Broken())
     console = Console(as_json=True, answer_yes=True)
     with pytest.raises(BrokenPipeError):
@@ -220,7 +220,7 @@ def test_a_closed_file_is_an_error_like_any_other(monkeypatch: pytest.MonkeyPatc
         console.message("condition 1")
 
 
-def test_an_output_closed_from_the_start_is_missed_by_nobody(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
+def test_an_output_closed_from_the_start_is_no_error(monkeypatch: pytest.MonkeyPatch, capsys: Output) -> None:
     monkeypatch.setattr(sys, "stdout", None)
     Console(as_json=True, answer_yes=True).result("runs/one")
     assert capsys.readouterr() == ("", "")
@@ -238,7 +238,7 @@ def test_a_broken_progress_line_is_noticed_although_a_thread_draws_it(monkeypatc
         console.end()
 
 
-def test_a_question_for_a_quantity_shows_what_to_type(keyboard: Typed, capsys: Output) -> None:
+def test_a_question_for_a_quantity_shows_an_example(keyboard: Typed, capsys: Output) -> None:
     prompts = Prompts(person="anna")
     prompt = prompts.ask(0.0, "install wheel 1", unit="Shore A")
     console = Console(as_json=False, answer_yes=False)

@@ -28,7 +28,7 @@ def answer(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
     monkeypatch.setattr(sys, "stdin", io.StringIO(text))
 
 
-def test_the_doctor_says_a_line_a_finding_and_ends_with_0(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_doctor_prints_a_line_a_finding_and_ends_with_0(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["doctor", *QUICK]) == 0
     out = capsys.readouterr().out
     assert "ok      CAN bus: 500000 bit/s, nodes 1, 2, 3, 4, 5" in out
@@ -48,7 +48,7 @@ def test_a_full_disk_ends_with_1(monkeypatch: pytest.MonkeyPatch, capsys: pytest
     assert "fault   run folder: the disk is full" in capsys.readouterr().out
 
 
-def test_a_bundle_has_what_somebody_far_away_needs(tmp_path: Path) -> None:
+def test_a_bundle_has_everything_for_remote_support(tmp_path: Path) -> None:
     (tmp_path / "runs" / "2026-01-01T00-00-00-one").mkdir(parents=True)
     (tmp_path / "runs" / "2026-01-01T00-00-00-one" / "can.log").write_text("x", encoding="utf-8")
     assert invoke(["doctor", *QUICK, "--bundle", "help.zip"]) == 0
@@ -61,7 +61,7 @@ def test_a_bundle_has_what_somebody_far_away_needs(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("command", [["doctor", *QUICK, "--rig"], ["bus", "params", "dump"]])
-def test_a_rig_that_somebody_uses_is_left_alone(
+def test_a_rig_in_use_is_left_alone(
     command: list[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.setenv(FOLDER_VARIABLE, str(tmp_path))
@@ -87,7 +87,7 @@ def test_an_object_that_is_not_there_ends_with_1(capsys: pytest.CaptureFixture[s
 
 
 @pytest.mark.parametrize("typed", [("conveyor", "1000"), ("1", "10000"), ("128", "1000")])
-def test_what_names_no_object_is_a_usage_error(typed: tuple[str, str]) -> None:
+def test_an_argument_that_names_no_object_is_a_usage_error(typed: tuple[str, str]) -> None:
     assert invoke(["bus", "sdo", *typed]) == 2
 
 
@@ -130,7 +130,7 @@ def test_a_dump_compared_with_itself_does_not_differ(capsys: pytest.CaptureFixtu
     assert capsys.readouterr().out == "was.json\n"
 
 
-def test_a_difference_is_told_and_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_difference_is_reported_and_ends_with_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["bus", "params", "dump", "sim", "-o", "was.json"]) == 0
     path = tmp_path / "was.json"
     path.write_text(path.read_text(encoding="utf-8").replace('"value": "2000"', '"value": "1900"', 1), encoding="utf-8")

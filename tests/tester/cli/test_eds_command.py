@@ -31,7 +31,7 @@ def test_of_two_profiles_of_a_maker_the_one_that_fits_is_taken(capsys: pytest.Ca
     assert "speed axis with the profile elmo_simpliq: would be connected" in capsys.readouterr().out
 
 
-def test_everything_that_is_refused_is_told_and_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
+def test_every_refusal_is_reported_and_ends_with_1(capsys: pytest.CaptureFixture[str]) -> None:
     sheet = str(SHEETS / "maxon_epos4.eds")
     assert invoke(["bus", "eds", sheet, "--profile", "cia402"]) == 1
     said = capsys.readouterr().out

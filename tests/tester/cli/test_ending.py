@@ -130,7 +130,7 @@ def test_with_json_there_is_no_table(tmp_path: Path, capsys: pytest.CaptureFixtu
     assert capsys.readouterr().err == ""
 
 
-def test_the_table_says_of_what_its_uncertainty_is(tmp_path: Path) -> None:
+def test_the_table_states_the_measurand_of_its_uncertainty(tmp_path: Path) -> None:
     assert "U: expanded uncertainty (95 %) of this wheel; conditions.csv has the compound's" in ending_lines(
         small_run(tmp_path)
     )

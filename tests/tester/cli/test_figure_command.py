@@ -55,13 +55,13 @@ def test_a_figure_is_written_in_each_format(
         (("two",), "no run two"),
     ],
 )
-def test_what_is_not_there_is_refused(
+def test_missing_runs_are_refused(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], message: str
 ) -> None:
     assert message in out(capsys, *arguments, code=2)
 
 
-def test_several_runs_are_drawn_together_too(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_several_runs_are_also_drawn_together(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib", reason="needs the extra `report`")
     made_run(home / "runs" / "two", [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3)])
     told = [Path(line) for line in out(capsys, "one", "two").splitlines()]
@@ -103,7 +103,7 @@ def test_the_parts_of_a_law_are_drawn_without_a_run(home: Path, capsys: pytest.C
         (["--components", "--speed", "0 m/s"], "above 0"),
     ],
 )
-def test_what_cannot_be_drawn_of_a_law_is_said(
+def test_parts_of_a_law_that_cannot_be_drawn_are_reported(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
     assert message in " ".join(out(capsys, *arguments, code=2).split())

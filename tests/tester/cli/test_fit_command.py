@@ -38,13 +38,13 @@ def data(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> 
     return json.loads(out(capsys, *arguments, "--json", code=code))
 
 
-def test_the_papers_table_is_told_and_met(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_papers_table_is_printed_and_met(capsys: pytest.CaptureFixture[str]) -> None:
     told = out(capsys, "paper").splitlines()
     assert any(line.split()[-5:] == ["10.62", "5.90", "50.1", "36", "54"] for line in told)
     assert sum(line.startswith("  ok") for line in told) == 2
 
 
-def test_a_figure_that_misses_is_told_and_is_the_exit_code(
+def test_a_figure_that_misses_is_reported_and_sets_the_exit_code(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(published, "V2_MEAN", 0.06)
@@ -71,12 +71,12 @@ def test_it_ends_with_peaks_exponents_and_signs(capsys: pytest.CaptureFixture[st
     assert end.count("no peak between 100 N and 400 N; exponent -0.") == 3
 
 
-def test_the_papers_law_is_told_as_table_3_with_the_caution(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_papers_law_is_printed_as_table_3_with_the_caution(capsys: pytest.CaptureFixture[str]) -> None:
     told = out(capsys, "fit", "appendix-a", "--law", "paper")
     assert "as Table 3" in told and "a1 is an extrapolation to 1 N: compare predictions, never a1" in told
 
 
-def test_a_run_is_fitted_with_what_its_repeats_say(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_is_fitted_with_the_scatter_of_its_repeats(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made_run(home / "one")
     (group,) = data(capsys, "fit", "one", "--validate", "appendix-b")["groups"]
     assert group["conditions"] == len(DESIGN)
@@ -104,7 +104,7 @@ def test_a_law_that_does_not_describe_is_refused_first_and_force_shows_the_rest(
     assert "rises to a peak" in forced
 
 
-def test_the_right_law_is_told_with_the_departure_that_would_be_seen(
+def test_the_right_law_is_reported_with_the_departure_that_would_be_seen(
     home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     made_track_run(home / "one")
@@ -134,7 +134,7 @@ def test_several_runs_are_fitted_together(home: Path, capsys: pytest.CaptureFixt
     assert data(capsys, "fit", "one", "two")["groups"][0]["conditions"] == len(DESIGN)
 
 
-def test_what_was_left_out_is_said(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_left_out_conditions_are_reported(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made_run(home / "one", carried=[1], sideslip={2: 10.0})
     assert invoke(["fit", "one"]) == 0
     said = capsys.readouterr().err
@@ -188,7 +188,7 @@ def test_a_command_that_makes_no_sense_is_refused(
     assert message in out(capsys, "fit", *arguments, code=2)
 
 
-def test_a_run_without_values_says_why(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_without_values_gives_the_reason(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     made_run(home / "one", DESIGN[:2], failed=[1, 2])
     assert "no condition of one can be fitted: left out for not reached" in out(capsys, "fit", "one", code=1)
 
@@ -256,7 +256,7 @@ def tread(temperature_c: float, speed_m_s: float) -> float:
         (["--law", "persson", "--surface", "road"], "no spectrum of heights"),
     ],
 )
-def test_what_makes_no_law_of_a_track_is_refused(
+def test_impossible_laws_of_a_track_are_refused(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
     made_track_run(home / "one", (10.0, 25.0), (0.05, 0.2, 1.0), compounds=("tread",), band_k=50.0)

@@ -135,7 +135,7 @@ def test_a_schema_for_editors(capsys: pytest.CaptureFixture[str]) -> None:
 
 
 @pytest.mark.parametrize("law", [V2_LAW, PAPER], ids=lambda law: law.name)
-def test_the_interval_holds_what_was_not_fitted(law: Any) -> None:
+def test_the_interval_contains_held_out_conditions(law: Any) -> None:
     """Over many sets, 95 % of held-out conditions are inside; the binomial deviation of 375 is 1.1 %."""
     random, inside, count = np.random.default_rng(7), 0, 0
     warm = (25.0, 40.0, 55.0, 70.0, 85.0)

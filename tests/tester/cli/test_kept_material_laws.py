@@ -82,7 +82,7 @@ def by_hand(form: str, figures: dict[str, float]) -> laws.FrictionLaw:
 
 
 @pytest.mark.parametrize("form", MATERIALS)
-def test_a_law_that_is_kept_and_read_again_predicts_what_its_figures_do(
+def test_a_law_that_is_kept_and_read_again_predicts_like_its_figures(
     form: str, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     model = load_law(home / f"{form}.yaml").model

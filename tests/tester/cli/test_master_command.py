@@ -44,7 +44,7 @@ def test_a_run_of_the_simulated_law_collapses_at_its_ts(home: Path, capsys: pyte
     assert len(found["rows"]) == 99 and len(found["neighbours"]) == 10
 
 
-def test_the_table_is_stdout_and_what_is_said_of_it_stderr(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_table_goes_to_stdout_and_messages_to_stderr(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     table, summary = said(capsys, str(made_track_run(home / "one")))
     assert len(table.splitlines()) == 100 and table.startswith("log10 aT v  mu as measured")
     assert "SBR, dry, 20 N: 99 conditions of one, 11 temperatures from -40 to 60 degC" in summary
@@ -114,7 +114,7 @@ def test_conditions_that_differ_in_more_have_to_be_chosen(home: Path, capsys: py
     assert "there are 20 N" in said(capsys, run, "--interface", "dry", "--load", "10 N", code=2)[1]
 
 
-def test_what_is_left_out_is_named(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_left_out_conditions_are_named(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     _, summary = said(capsys, str(made_track_run(home / "one", failed=[7])))
     assert "left out (not reached): one/7 (SBR, 20 N, -40 degC, 1 mm/s)" in summary
 
@@ -153,7 +153,7 @@ def test_the_figure_is_drawn(home: Path, capsys: pytest.CaptureFixture[str], end
     (["--ts", "warm"], "--ts: "),
     (["--load", "2 kg"], "--load: "),
 ])  # fmt: skip
-def test_options_that_say_nothing_are_usage_errors(
+def test_options_without_effect_are_usage_errors(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
 ) -> None:
     assert told in said(capsys, str(made_track_run(home / "one")), *arguments, code=2)[1]

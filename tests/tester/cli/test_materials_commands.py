@@ -24,7 +24,7 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     return tmp_path
 
 
-def test_list_names_what_ships_and_says_what_is_hidden(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_list_names_packaged_materials_and_hidden_ones(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "compounds").mkdir()
     (folder / "compounds" / "mine.yaml").write_text("name: SBR\n", encoding="utf-8")
     assert invoke(["materials", "list"]) == 0
@@ -42,14 +42,14 @@ def test_list_as_json(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
             "hidden": False} in listed  # fmt: skip
 
 
-def test_list_tells_a_file_without_a_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_list_reports_a_file_without_a_name(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "surfaces").mkdir()
     (folder / "surfaces" / "x.yaml").write_text("note: y\n", encoding="utf-8")
     assert invoke(["materials", "list"]) == 0
     assert "x.yaml: has no name, so no recipe can name it" in capsys.readouterr().err
 
 
-def test_show_says_what_a_file_holds_and_its_hash(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_the_content_of_a_file_and_its_hash(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["materials", "show", "tread"]) == 0
     out = capsys.readouterr().out
     assert "holds    measured, 261 points, -110 to 150 degC, 1 Hz" in out
@@ -59,7 +59,7 @@ def test_show_says_what_a_file_holds_and_its_hash(folder: Path, capsys: pytest.C
     assert f"sha256   {one['sha256']}" in out and one["content"]["shear"]["tau_s0"] == "12000 Pa"
 
 
-def test_show_tells_the_four_rubbers_of_grosch_apart(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_distinguishes_the_four_rubbers_of_grosch(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     shown: list[dict[str, object]] = []
     for name in ("SBR", "ABR", "INR", "butyl"):
         assert invoke(["materials", "show", name, "--json"]) == 0
@@ -73,7 +73,7 @@ def test_show_of_an_unknown_name_is_a_usage_error(folder: Path, capsys: pytest.C
     assert 'did you mean "tread"?' in capsys.readouterr().err
 
 
-def test_check_tells_doubts_and_problems(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_reports_doubts_and_problems(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "c.yaml").write_text("name: x\nmoduli: {constant: {G: 1 MPa}}\n", encoding="utf-8")
     assert invoke(["materials", "check", "c.yaml"]) == 0
     out, err = capsys.readouterr()
@@ -86,7 +86,7 @@ def test_check_tells_doubts_and_problems(folder: Path, capsys: pytest.CaptureFix
     assert json.loads(capsys.readouterr().out)["valid"] is False
 
 
-def test_an_import_is_said_and_can_be_read_again(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_import_is_reported_and_can_be_read_again(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "d.csv").write_text(DMA, encoding="cp1252")
     assert invoke(["materials", "import", "dma", "d.csv", "--name", 'my "1#"', "-o", "c.yaml"]) == 0
     out, err = capsys.readouterr()
@@ -102,7 +102,7 @@ def test_an_import_is_said_and_can_be_read_again(folder: Path, capsys: pytest.Ca
     assert any("does not say of which deformation" in doubt.message for doubt in one.file.doubts)
 
 
-def test_an_import_replaces_no_file_unless_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_import_replaces_no_file_by_default(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "d.csv").write_text(DMA, encoding="utf-8")
     (folder / "c.yaml").write_text("mine\n", encoding="utf-8")
     arguments = ["materials", "import", "dma", "d.csv", "--name", "x", "-o", "c.yaml"]
@@ -120,7 +120,7 @@ def test_a_table_that_is_too_long_for_a_file_of_ours_is_not_written(
     assert "would be larger than 256 kB" in capsys.readouterr().err and not Path("c.yaml").exists()
 
 
-def test_columns_and_units_may_be_said(folder: Path) -> None:
+def test_columns_and_units_may_be_given(folder: Path) -> None:
     text = DMA.replace("Storage Modulus;Loss Modulus", "A;B").replace(";[Hz];[MPa];[MPa]\n", "")
     (folder / "d.csv").write_text(text, encoding="utf-8")
     arguments = ["materials", "import", "dma", "d.csv", "--name", "x", "-o", "c.yaml"]
@@ -216,7 +216,7 @@ def test_show_of_a_formula_gives_its_maxima_over_the_frequency(
                      "amplitude, which counts as Ra):"]),
     ],
 )  # fmt: skip
-def test_show_tells_stated_waves_from_found_ones(
+def test_show_distinguishes_stated_waves_from_found_ones(
     name: str, waves: list[str], folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["materials", "show", name, "--json"]) == 0
@@ -224,7 +224,7 @@ def test_show_tells_stated_waves_from_found_ones(
     assert one["facts"]["waves"] == waves and one["facts"]["coarse"] and one["facts"]["fine"]
 
 
-def test_a_prediction_with_found_waves_says_so(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_prediction_with_found_waves_states_it(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     arguments = ["predict", "--law", "greta", "--compound", "tread", "--slip", "1 m/s", "--load", "30 N",
                  "--temperature", "25 degC", "--surface"]  # fmt: skip
     assert invoke([*arguments, "asphalt"]) == 0
@@ -268,7 +268,7 @@ def test_a_material_is_drawn_with_its_words(
     assert drawn.startswith("<?xml") and all(text in drawn for text in texts)
 
 
-def test_a_drawing_names_the_extra_the_format_and_what_it_cannot_draw(
+def test_a_drawing_names_the_missing_extra_the_format_and_undrawable_materials(
     folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     import sys

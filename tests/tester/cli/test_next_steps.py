@@ -31,7 +31,7 @@ def test_a_finished_run_is_shown_and_not_resumed(tmp_path: Path) -> None:
     assert not any(command.startswith("resume") for command in commands(tmp_path))
 
 
-def test_an_interrupted_run_comes_first_with_what_is_kept_of_it(tmp_path: Path) -> None:
+def test_an_interrupted_run_comes_first_with_its_kept_repeats(tmp_path: Path) -> None:
     small_run(tmp_path / "runs" / "one")
     open_run(tmp_path / "runs" / "two")
     step = next(next_steps(tmp_path))

@@ -28,7 +28,7 @@ def write(folder: Path, port: int = 1, more: str = "", further: str = "") -> Non
     (folder / "notices.yaml").write_text(MAIL.format(port=port, more=more) + further)
 
 
-def test_check_prints_what_goes_where(folder: Path, capsys: Capture) -> None:
+def test_check_prints_the_recipients_of_each_notice(folder: Path, capsys: Capture) -> None:
     write(folder, more=f", second: [{HEAD}], causes: [trip, prompt]")
     assert invoke(["notices", "check"]) == 0
     lines = {line.split()[0]: line for line in capsys.readouterr().out.splitlines()}
@@ -112,7 +112,7 @@ def test_list_shows_age_address_attempts_and_reason(folder: Path, capsys: Captur
         assert part in line
 
 
-def test_list_shows_what_was_given_up(folder: Path, capsys: Capture) -> None:
+def test_list_shows_abandoned_notices(folder: Path, capsys: Capture) -> None:
     write(folder)
     scene = scene_of(folder, mail_settings(1), PlayedChannel(lambda: NotDeliveredError("550 no", final=True)))
     scene.take(notice(1))

@@ -57,7 +57,7 @@ def stored(home: Path, recorded: str, status: RepeatStatus = RepeatStatus.VALID)
         ("rig unreachable", MISSING, False, "rig unreachable"),
     ],
 )
-def test_everybody_says_the_same(
+def test_every_output_shows_the_same_status(
     home: Path, capsys: pytest.CaptureFixture[str], recorded: str, repeats: RepeatStatus, held: bool, word: str
 ) -> None:
     folder = stored(home, recorded, repeats)

@@ -88,7 +88,7 @@ def test_wrong_unit_is_refused_naming_those_accepted(
     ("option", "value", "part"),
     [("compound", "4#", "1#, 2#, 3#"), ("model", "v3", "paper"), ("load", "0 N", "load"), ("load", "-5 N", "load")],
 )
-def test_what_the_model_does_not_cover_is_a_usage_error(
+def test_a_point_that_the_model_does_not_cover_is_a_usage_error(
     capsys: pytest.CaptureFixture[str], option: str, value: str, part: str
 ) -> None:
     assert part in refusal(capsys, **{option: value})
@@ -104,7 +104,7 @@ def warnings(capsys: pytest.CaptureFixture[str], **options: str) -> list[str]:
     return capsys.readouterr().err.splitlines()
 
 
-def test_inside_the_data_nothing_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_inside_the_data_there_is_no_warning(capsys: pytest.CaptureFixture[str]) -> None:
     assert warnings(capsys) == []
     assert warnings(capsys, load="400 N", temperature="85 degC", slip="400 mm/s") == []
 
@@ -123,14 +123,14 @@ def test_inside_the_data_nothing_is_said(capsys: pytest.CaptureFixture[str]) -> 
         ({"sideslip": "-10 deg"}, "0.58 sin|sideslip| of 1# is this project's"),
     ],
 )
-def test_what_the_value_rests_on_is_said_once(
+def test_the_basis_of_the_value_is_stated_once(
     capsys: pytest.CaptureFixture[str], options: dict[str, str], said: str
 ) -> None:
     (line,) = warnings(capsys, **options)
     assert line.startswith("warning: ") and said in line
 
 
-def test_each_bound_that_is_left_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_each_exceeded_bound_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     assert len(warnings(capsys, compound="2#", sideslip="31 deg", load="500 N")) == 2
 
 

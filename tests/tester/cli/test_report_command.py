@@ -73,7 +73,7 @@ def test_a_kind_that_is_not_installed_has_a_report_without_its_words(
         ((), "Missing argument"),
     ],
 )
-def test_what_is_not_there_is_refused(
+def test_missing_runs_are_refused(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: tuple[str, ...], message: str
 ) -> None:
     assert message in out(capsys, *arguments, code=2)

@@ -62,11 +62,11 @@ def test_every_row_can_be_written_begins_and_ends(phrase: str) -> None:
 
 
 @pytest.mark.parametrize("phrase", [row.phrase for row in CATALOGUE.values() if row.reaction.name == "MAY"])
-def test_a_row_that_asks_nothing_says_why(phrase: str) -> None:
+def test_a_row_without_demands_gives_a_reason(phrase: str) -> None:
     assert CATALOGUE[phrase].note
 
 
-def test_a_chamber_that_runs_away_gets_hot_whatever_it_was_told() -> None:
+def test_a_chamber_that_runs_away_gets_hot_despite_its_setpoint() -> None:
     rig = made()
     play(rig, "chamber runs away", 30.0)
     assert rig.plant.air_c > 24.0
@@ -78,7 +78,7 @@ def test_a_silent_chamber_answers_nothing() -> None:
     assert rig.chamber is not None and not rig.chamber.powered
 
 
-def test_a_frozen_cell_shows_what_it_showed() -> None:
+def test_a_frozen_cell_keeps_its_reading() -> None:
     rig = run(drive(lower(made()), 1.0), 2.0)
     shown = cell_n(rig)
     play(rig, "load cell frozen")

@@ -58,7 +58,7 @@ def test_a_track_that_must_stand_and_moves_is_harm() -> None:
     assert watched(drive(made(), 1.0), must_stand=True) == ["motion where everything must stand"]
 
 
-def test_an_arm_that_comes_down_where_everything_must_stand_is_harm_and_one_that_goes_up_is_none() -> None:
+def test_a_falling_arm_where_everything_must_be_at_rest_is_harm_and_a_rising_arm_is_not() -> None:
     rig = made("pin-on-disc")
     observer = TrackHarmObserver(rig, tared=True)
     rig.hand_mm = 5.0
@@ -71,7 +71,7 @@ def test_an_arm_that_comes_down_where_everything_must_stand_is_harm_and_one_that
     assert list(observer.found) == ["motion where everything must stand"]
 
 
-def test_what_is_missing_to_the_safe_state_is_named() -> None:
+def test_everything_missing_for_the_safe_state_is_named() -> None:
     rig = run(drive(made(), 1.0), 1.0)
     assert TrackTruth.of(rig).unsafe(1e-5) == ["track 0.001 m/s"]
     assert TrackTruth.of(made()).unsafe(1e-5) == []

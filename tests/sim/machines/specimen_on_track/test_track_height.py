@@ -21,7 +21,7 @@ def test_a_lifted_arm_is_as_high_as_its_lift_above_the_touch(lift_mm: float, hei
     assert plant.height_mm == pytest.approx(height_mm)
 
 
-def test_a_lowered_arm_is_lower_by_what_the_load_squeezes() -> None:
+def test_a_lowered_arm_is_lower_by_the_compression_under_load() -> None:
     assert lowered(weights_n=20.0).height_mm == pytest.approx(-20.0 / CONTACT.squeeze)
 
 

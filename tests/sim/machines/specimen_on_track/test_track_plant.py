@@ -194,13 +194,13 @@ def test_a_specimen_put_in_reads_its_materials_once(tables: Path) -> None:
     assert sorted(asked) == ["SBR", "track"]
 
 
-def test_without_materials_such_a_law_says_what_it_needs() -> None:
+def test_without_materials_such_a_law_names_its_needs() -> None:
     with pytest.raises(ValueError, match="'persson' is made of materials and needs the modulus of 'SBR'"):
         lowered(replace(CLEAN, law="persson"))
 
 
 @pytest.mark.parametrize("law", ["power", "arrhenius"])
-def test_plain_laws_are_found_by_their_names_too(law: str) -> None:
+def test_plain_laws_are_also_found_by_their_names(law: str) -> None:
     plant = slid(lowered(replace(CLEAN, law=law)), 1e-3, 3.0)
     assert plant.mu == pytest.approx(make(law, "SBR").mu(plant.specimen_c, 20.0, 1e-3))
 
@@ -235,7 +235,7 @@ def test_the_specimen_follows_the_air_late() -> None:
     assert plant.specimen_c == pytest.approx(60.0 - 37.0 * exp(-1.0), rel=1e-9)
 
 
-def test_a_specimen_colder_than_its_law_is_told() -> None:
+def test_a_specimen_colder_than_its_law_is_reported() -> None:
     plant = lowered()
     plant.specimen_c = plant.air_c = -110.0
     with pytest.raises(PoleError):
@@ -265,7 +265,7 @@ def test_equal_seeds_make_equal_rigs_and_others_other_ones() -> None:
     assert all(one != other for one, other in zip(reading(5), reading(6), strict=True))
 
 
-def test_a_repeat_does_not_depend_on_what_was_measured_before() -> None:
+def test_a_repeat_does_not_depend_on_earlier_measurements() -> None:
     def reading(before: int) -> float:
         plant = TrackPlant(TrackParameters(), 5)
         plant.install(3, "SBR")

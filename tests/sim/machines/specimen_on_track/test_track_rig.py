@@ -123,7 +123,7 @@ def test_the_chamber_refuses_a_setpoint_beyond_its_range() -> None:
     assert asked(rig, "heat", "030600000001") == bytes.fromhex("038602")  # a reading
 
 
-def test_pyrometer_and_thermometer_tell_contact_and_room() -> None:
+def test_pyrometer_and_thermometer_show_contact_and_room() -> None:
     rig = made("pin-on-disc")
     rig.lower_arm()
     run(drive(rig, 1.0), 60.0, 0.1)
@@ -159,7 +159,7 @@ def test_an_arm_without_a_drive_is_moved_by_hand() -> None:
     assert run(rig, 0.2).plant.load_n == 0.0
 
 
-def test_a_copied_rig_goes_on_as_its_original() -> None:
+def test_a_copied_rig_continues_as_its_original() -> None:
     rig = drive(lower(made()), 1.0)
     other = deepcopy(rig)
     assert run(rig, 1.0).plant.force_n == run(other, 1.0).plant.force_n
@@ -170,7 +170,7 @@ def test_the_log_has_a_value_for_each_column() -> None:
     assert len(machine.log_row(made())) == len(machine.log_columns) == len(machine.log_decimals)
 
 
-def test_a_further_sensor_that_shows_what_the_plant_does_not_have_is_refused() -> None:
+def test_a_further_sensor_of_a_quantity_that_the_plant_lacks_is_refused() -> None:
     spec = wiring("grosch")
     cell = spec.devices["load_cell"]
     devices = {**spec.devices, "second": replace(cell, unit_id=9, shows={"fx": "no_such_quantity"})}

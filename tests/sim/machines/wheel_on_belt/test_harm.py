@@ -84,7 +84,7 @@ def test_motion_where_everything_must_stand_is_harm(rig: WheelRig):
     assert watched(rig, 0.05, must_stand=False) == {}
 
 
-def test_a_press_that_comes_is_motion_and_one_that_goes_is_none(rig: WheelRig):
+def test_an_approaching_press_is_motion_and_a_retracting_press_is_not(rig: WheelRig):
     rig.axes["press"].axis.value = -20.0
     assert watched(rig, 0.05, must_stand=True) == {}
     observer = HarmObserver(rig)
@@ -95,7 +95,7 @@ def test_a_press_that_comes_is_motion_and_one_that_goes_is_none(rig: WheelRig):
     assert "motion where everything must stand" in observer.found
 
 
-def test_what_is_missing_to_the_safe_state_is_named(rig: WheelRig):
+def test_everything_missing_for_the_safe_state_is_named(rig: WheelRig):
     rig.plant.force_z_n = 8.0
     rig.axes["wheel"].axis.value = 2.0
     missing = Truth.of(rig).unsafe()

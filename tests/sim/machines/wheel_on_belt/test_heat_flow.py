@@ -87,7 +87,7 @@ def test_a_disturbance_ends_the_calm_at_once(event: tuple[float, bool, bool]) ->
     assert flow.state.hub_c == pytest.approx(before_c + 0.05 * 100.0 / 420.0, rel=1e-4)
 
 
-def test_a_copy_goes_on_alike_and_by_itself() -> None:
+def test_a_copy_continues_identically_and_independently() -> None:
     flow = build()
     for _ in range(33):
         flow.advance(0.1, 150.0, 0.0, False, True)

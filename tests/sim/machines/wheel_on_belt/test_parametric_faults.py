@@ -178,14 +178,14 @@ def test_a_filter_of_first_order_reaches_two_thirds_in_its_time() -> None:
     assert slow.shown((20.0, 1.0), 2.0) == pytest.approx((16.32, 0.632), abs=2e-3)
 
 
-def test_a_delay_shows_what_was() -> None:
+def test_a_delay_shows_past_readings() -> None:
     slow = Slow("delay", 0.5)
     shown = [slow.shown((float(i),), 0.1 * i)[0] for i in range(20)]
     assert shown[:6] == [0.0] * 6 and shown[19] == 14.0
 
 
 @pytest.mark.parametrize("fault", ["load cell lag 1 s", "load cell delay 1 s"])
-def test_a_slow_load_cell_goes_on_showing_a_load_that_has_gone(fault: str) -> None:
+def test_a_slow_load_cell_still_shows_a_load_that_has_gone(fault: str) -> None:
     rig = deepcopy(sliding())
     script, scene = FaultScript().add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")]), Scene(rig, Nobody())
     script.act(scene, rig.now_s + 1e-6)
@@ -212,7 +212,7 @@ def test_a_wrong_scale_makes_another_speed_of_the_one_shown(axis: str, percent: 
     assert (rig.rim_m_s, rig.belt_m_s) == pytest.approx((wheel, belt), rel=2e-3)
 
 
-def test_swapped_drives_move_what_the_other_should() -> None:
+def test_swapped_drives_move_each_others_axis() -> None:
     rig = under("wheel and belt drives swapped")
     assert rig.wheel_rad_s == pytest.approx(0.5 / 0.05) and rig.belt_m_s == pytest.approx(0.8 / 0.045 * 0.05)
 
@@ -256,7 +256,7 @@ def test_rubber_that_relaxes_more_begins_where_it_was_and_loses_more() -> None:
 
 
 @pytest.mark.parametrize("phrase", UNDONE)
-def test_what_ends_is_as_it_was(phrase: str) -> None:
+def test_a_fault_that_ends_leaves_no_trace(phrase: str) -> None:
     rig, whole = deepcopy(sliding()), deepcopy(sliding())
     for one in (rig, whole):
         one.axes["press"].axis.position = 0.0

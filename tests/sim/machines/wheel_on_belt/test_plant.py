@@ -91,7 +91,7 @@ def test_friction_model_is_the_one_asked_for(model: str) -> None:
 @pytest.mark.parametrize("belt_m_s", [0.3, 0.8001, 0.7998, 1.1])
 @pytest.mark.parametrize("sideslip_deg", [0.0, 12.0])
 @pytest.mark.parametrize("load_n", [5.0, 200.0])
-def test_rubbing_is_what_the_formulas_say(
+def test_rubbing_follows_the_formulas(
     model: str, belt_m_s: float, sideslip_deg: float, load_n: float
 ) -> None:
     plant = mounted(replace(SimParameters(noise=0.0, friction_model=model), contact=ROUND.contact))
@@ -379,7 +379,7 @@ def test_same_seed_gives_the_same_readings_and_another_gives_others() -> None:
     assert readings[0] != readings[2]
 
 
-def test_random_numbers_of_a_repeat_do_not_depend_on_what_was_before() -> None:
+def test_random_numbers_of_a_repeat_do_not_depend_on_its_past() -> None:
     direct, late = mounted(SimParameters()), mounted(SimParameters())
     measured(late)
     late.begin_repeat(1, 1, 1, MIDDLE)
@@ -492,7 +492,7 @@ def test_without_the_rubber_s_effects_nothing_of_them_is_there() -> None:
     assert plant.force_z_n == pytest.approx(200.0, rel=1e-6)
 
 
-def test_press_stands_where_the_contact_says_whatever_it_has_been_through() -> None:
+def test_press_position_follows_the_contact_whatever_its_past() -> None:
     plant = mounted(SimParameters(noise=0.0, relaxation=1.0, softening=1.0))
     run(plant, 60.0, 300.0, heater_w=100.0, dt=0.01)
     wanted_mm = plant.press_at_mm(350.0)
@@ -512,7 +512,7 @@ def test_scatter_multiplies_the_friction() -> None:
     assert sum(ratios[200:]) / len(ratios[200:]) == pytest.approx(fixed, rel=3e-3)
 
 
-def test_copy_goes_on_alike_and_by_itself() -> None:
+def test_copy_continues_identically_and_independently() -> None:
     plant = mounted(SimParameters())
     plant.begin_repeat(1, 1, 1, MIDDLE)
     measured(plant)

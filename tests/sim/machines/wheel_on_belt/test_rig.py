@@ -126,7 +126,7 @@ def test_the_torques_of_wheel_and_belt_are_those_of_friction_and_their_own(rolli
     assert all(0.97 <= gain <= 1.03 for gain in gains) and gains[0] != gains[1]
 
 
-def test_what_both_drives_give_is_what_friction_and_bearings_take() -> None:
+def test_the_power_of_both_drives_equals_that_of_friction_and_bearings() -> None:
     world = Simulation(overrides=["sim.noise=0"]).until(sliding).world
     plant, axes = world.plant, world.axes
     given_w = axes["wheel"].torque_nm * world.wheel_rad_s + axes["belt"].torque_nm * world.belt_m_s / 0.05
@@ -233,7 +233,7 @@ def test_a_press_that_loses_its_power_on_its_way_in_is_driven_back_by_the_load_a
     assert forces[-1] == 0.0
 
 
-def test_a_press_at_its_limit_comes_back_when_it_is_told_to() -> None:
+def test_a_press_at_its_limit_returns_on_command() -> None:
     world = powered()
     driven(world, 5.0, 2.0)
     assert driven(world, -5.0, 1.0)[-1] == 0.0
@@ -267,7 +267,7 @@ def test_equal_seeds_make_equal_rigs(world: WheelRig) -> None:
     assert forces[0] == forces[1] != forces[2]
 
 
-def test_a_copied_rig_goes_on_as_its_original(world: WheelRig) -> None:
+def test_a_copied_rig_continues_as_its_original(world: WheelRig) -> None:
     world.advance(1.0)
     copied = deepcopy(world)
     world.advance(2.0)

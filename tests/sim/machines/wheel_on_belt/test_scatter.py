@@ -44,7 +44,7 @@ def test_a_setting_has_one_factor_of_its_compound_and_seed() -> None:
     {"slip_m_s": 0.2}, {"load_n": 100.0}, {"angles_deg": (5.0, 0.0)}, {"angles_deg": (0.0, 2.0)},
     {"temperature_c": 55.0},
 ])  # fmt: skip
-def test_each_of_its_values_tells_a_setting_from_another(other: dict[str, Any]) -> None:
+def test_each_of_its_values_distinguishes_settings(other: dict[str, Any]) -> None:
     assert factor(MIDDLE._replace(**other)) != factor(MIDDLE)
 
 
@@ -68,7 +68,7 @@ def test_scatter_scaled_to_nothing_is_exactly_one() -> None:
     assert run_factor(QUIET, 1, 1, 1, 1, 1, 1) == 1.0
 
 
-def test_stated_sigma_is_what_the_means_of_repeats_scatter_by() -> None:
+def test_stated_sigma_is_the_scatter_of_the_means_of_repeats() -> None:
     parameters, window_s, process = SimParameters(), 10.6, Autoregressive(0.01, 0.3)
     process.retime(0.1)
     means: list[float] = []
@@ -89,7 +89,7 @@ def test_stated_sigma_of_one_short_run_has_every_part() -> None:
     assert stated_sigma(SimParameters(), "3#", 1, 1e-4) == pytest.approx(math.hypot(*parts), rel=1e-4)
 
 
-def test_stated_sigma_keeps_what_repeats_cannot_average_out() -> None:
+def test_stated_sigma_keeps_errors_that_repeats_cannot_average_out() -> None:
     parameters = SimParameters()
     assert stated_sigma(parameters, "2#", 10_000, 60.0) == pytest.approx(math.hypot(0.03, 0.042), rel=1e-3)
     assert stated_sigma(QUIET, "2#", 5, 60.0) == 0.0

@@ -20,7 +20,7 @@ def test_one_part_at_rest_and_the_other_turning_take_the_torque_off(speeds: tupl
 
 
 @pytest.mark.parametrize("speeds", [(0.5, 0.5), (0.105, 0.0), (0.0, 0.0), (0.8, 0.02)])
-def test_what_every_run_does_leaves_it(speeds: tuple[float, float]) -> None:
+def test_normal_motion_does_not_trip_it(speeds: tuple[float, float]) -> None:
     assert not seen(StandstillRelay(), *[speeds] * 50)
 
 
@@ -30,7 +30,7 @@ def test_torque_comes_back_once_both_stand() -> None:
     assert not seen(relay, (0.0, 0.0), begin_s=1.0)
 
 
-def test_one_that_does_not_work_switches_nothing() -> None:
+def test_a_broken_relay_switches_nothing() -> None:
     relay = StandstillRelay()
     relay.works = False
     assert not seen(relay, *[(0.5, 0.0)] * 50)

@@ -48,7 +48,7 @@ def test_going_back_friction_is_on_the_other_side() -> None:
     assert moved(screw(), 200.0, 10.1, 10.0) == pytest.approx(K * 240.0 * (2.0 - 1.0 / 0.9) - 0.015)
 
 
-def test_a_press_that_stands_keeps_the_friction_it_came_to_rest_with() -> None:
+def test_a_press_at_rest_keeps_the_friction_it_came_to_rest_with() -> None:
     press = screw()
     pushed = moved(press, 200.0, 10.0, 10.1)
     assert moved(press, 200.0, 10.1, 10.1) == pushed

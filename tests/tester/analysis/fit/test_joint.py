@@ -32,7 +32,7 @@ def noisy(share: float, seed: int = 0, **given: float) -> list[FitPoint]:
     return [replace(one, value=one.value * float(np.exp(e))) for one, e in zip(made, scattered, strict=True)]
 
 
-def test_what_was_put_in_comes_back() -> None:
+def test_the_fit_recovers_the_true_parameters() -> None:
     found = fitted(line(XS))
     assert found.parameters == pytest.approx((1.0, 0.5), abs=1e-9)
     assert found.errors.largest < 1e-9 and found.errors.near == found.errors.rows == len(XS)
@@ -56,7 +56,7 @@ def test_residuals_are_of_logarithms() -> None:
     assert doubled == pytest.approx([log(2.0)] * len(XS))
 
 
-def test_the_batch_finds_what_scipy_finds() -> None:
+def test_the_batch_agrees_with_scipy() -> None:
     problem = FitProblem(LINE, noisy(0.05, seed=3), {})
     start = problem.inward((1.0, 0.5))
     best = solve(problem, [(1.0, 0.5)])
@@ -65,7 +65,7 @@ def test_the_batch_finds_what_scipy_finds() -> None:
     assert many == pytest.approx(np.array([best, best]), abs=1e-6)
 
 
-def test_the_batch_counts_a_condition_as_often_as_told() -> None:
+def test_the_batch_counts_a_condition_by_its_weight() -> None:
     points = noisy(0.05, seed=4)
     counts = np.array([[2.0, 0.0] + [1.0] * (len(XS) - 2)])
     problem = FitProblem(LINE, points, {})
@@ -162,7 +162,7 @@ def test_pieces_of_a_run_that_differ_are_brought_together() -> None:
     assert fitted(points).lack.residual < 0.2 * fitted(one_piece).lack.residual
 
 
-def test_a_common_shift_of_a_variable_is_an_unknown_too() -> None:
+def test_a_common_shift_of_a_variable_is_also_an_unknown() -> None:
     source = Source("run", (Common("offset", 0.1, 0),))
     problem = FitProblem(LINE, [replace(one, source=source) for one in line(XS)], {})
     moved = problem.logarithms(np.array([0.0, 0.5, 2.0]))
@@ -179,7 +179,7 @@ def test_a_condition_that_is_off_shows_when_it_is_left_out() -> None:
     assert found.left_out.largest > found.errors.largest
 
 
-def test_residuals_are_told_by_level() -> None:
+def test_residuals_are_reported_by_level() -> None:
     found = fitted([*line(XS), point(XS[0], 1.1)])
     first = found.residuals[0][0]
     assert (first.value, first.count) == (XS[0], 2) and first.mean > 0.0
@@ -201,14 +201,14 @@ def test_a_held_parameter_stays() -> None:
         (line(XS), {"m": -1.0}, "m is held at -1 .expected above 0."),
     ],
 )
-def test_what_cannot_be_fitted_is_refused_with_what_would_do(
+def test_a_set_that_cannot_be_fitted_is_refused_with_a_remedy(
     points: list[FitPoint], held: dict[str, float], message: str
 ) -> None:
     with pytest.raises(FitError, match=message):
         fitted(points, **held)
 
 
-def test_conditions_that_cannot_tell_two_parameters_apart_are_refused() -> None:
+def test_conditions_that_cannot_separate_two_parameters_are_refused() -> None:
     twins = replace(
         LINE,
         parameters=(*LINE.parameters, replace(LINE.parameters[1], name="t")),
@@ -219,7 +219,7 @@ def test_conditions_that_cannot_tell_two_parameters_apart_are_refused() -> None:
         fit_group(twins, "one", noisy(0.02), (0,), {}, count=9)
 
 
-def test_errors_count_what_is_within_their_limits() -> None:
+def test_errors_count_conditions_within_their_limits() -> None:
     found = errors_of([1.04, 1.06, 1.11], [1.0, 1.0, 1.0])
     assert (found.rows, found.near, found.far) == (3, 1, 2)
     assert (found.mean, found.median, found.largest) == pytest.approx((0.07, 0.06, 0.11))

@@ -85,7 +85,7 @@ def test_repeats_known_worse_than_they_are_leave_the_signs_to_tell() -> None:
     assert {one.name: one.failed for one in found.tests} == {"size of the residuals": False, "signs along x": True}
 
 
-def test_the_signs_of_residuals_that_are_next_to_nothing_say_nothing() -> None:
+def test_the_signs_of_tiny_residuals_are_no_evidence() -> None:
     assert lack(drawn(1, 1e-5, bend=2e-4, type_a=0.01)).shown is False
 
 
@@ -94,7 +94,7 @@ def test_scatter_between_conditions_is_part_of_the_denominator() -> None:
     assert lack(wide).shown and not lack([replace(one, between=sqrt(0.05**2 - 0.01**2)) for one in wide]).shown
 
 
-def test_a_condition_weighs_by_its_repeats_what_is_its_own_and_the_scatter_between_conditions() -> None:
+def test_a_condition_weighs_by_its_repeats_its_own_error_and_the_scatter_between_conditions() -> None:
     one = replace(point(0.0, 1.0), type_a=0.02, own=0.03, between=0.06, df=inf)
     problem = FitProblem(LINE, [one, replace(one, own=0.0), replace(one, between=0.0), replace(one, type_a=0.0)], {})
     assert problem.sigma == pytest.approx([0.07, sqrt(0.004), sqrt(0.0013), sqrt(0.0045)])
@@ -133,7 +133,7 @@ def test_the_denominator_is_made_of_the_same_three() -> None:
     assert found.df == pytest.approx(0.07**4 / (0.02**4 / 8.0))
 
 
-def test_without_repeats_it_cannot_be_told() -> None:
+def test_without_repeats_there_is_no_verdict() -> None:
     found = lack([replace(one, type_a=float("nan"), df=0.0) for one in drawn(0, 0.02)])
     assert found.shown is None and found.tests == () and found.denominator is None
 
@@ -147,7 +147,7 @@ def test_conditions_of_a_run_share_the_degrees_of_freedom_of_its_repeatability()
     assert alone is not None and alone.df == pytest.approx(10.0)
 
 
-def test_what_is_said_to_be_visible_is_seen() -> None:
+def test_a_departure_stated_as_visible_is_found() -> None:
     found = lack(drawn(5, 0.02))
     problem, fitted = problem_of(drawn(5, 0.02))
     direction = np.cos(np.linspace(0.0, 6.0 * np.pi, len(XS)))  # neither a line nor a sign that keeps
@@ -157,14 +157,14 @@ def test_what_is_said_to_be_visible_is_seen() -> None:
 
 
 @pytest.mark.parametrize("n", [4, 20])
-def test_what_is_visible_is_as_long_as_a_noncentral_chi_squared_asks(n: int) -> None:
+def test_the_visible_departure_follows_a_noncentral_chi_squared(n: int) -> None:
     found = lack_of(*problem_of(left_over(alternating(n), 1.0)), draws=MANY)
     critical = stats.chi2.ppf(1.0 - 0.01 / 2.0, n - 2)  # two tests share 1 %; two parameters are fitted
     length = next(x for x in np.linspace(0.0, 20.0, 4001) if stats.ncx2.sf(critical, n - 2, x**2) >= 0.95)
     assert found.visible == pytest.approx(SHARE * length / sqrt(n), rel=0.01)
 
 
-def test_what_is_visible_beside_few_repeats_is_as_long_as_a_noncentral_f_asks() -> None:
+def test_the_visible_departure_with_few_repeats_follows_a_noncentral_f() -> None:
     found = lack_of(*problem_of(left_over(alternating(), 1.0, df=6.0)), draws=MANY)
     critical = stats.f.ppf(1.0 - 0.01 / 2.0, 18, 6)
     length = next(x for x in np.linspace(0.0, 40.0, 4001) if stats.ncf.sf(critical, 18, 6, x**2) >= 0.95)

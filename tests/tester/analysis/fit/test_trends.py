@@ -63,7 +63,7 @@ def test_a_peak_in_some_resamples_only_is_not_resolved() -> None:
     assert found.inside == 0.5 and found.word.startswith("not resolved")
 
 
-def test_trends_are_told_at_the_values_that_most_conditions_share() -> None:
+def test_trends_are_reported_at_the_values_that_most_conditions_share() -> None:
     found = trends_of(law(power), POINTS, (1.0, 0.3), Resamples(np.empty((0, 2)), 1))
     assert found.at == (0.5, 20.0)
 

@@ -62,7 +62,7 @@ def test_sets_drawn_anew_scatter_as_residuals_do_within_a_temperature_and_betwee
     assert float(np.mean(np.mean(drawn, axis=1) ** 2)) == pytest.approx(in_common + own / 9, rel=0.1)
 
 
-def test_a_ts_that_is_given_stands() -> None:
+def test_a_given_ts_is_kept() -> None:
     found = collapse(set_of(synthetic(0, 0.02)), 25.0)
     assert (found.ts_c, found.interval, found.searched) == (25.0, (25.0, 25.0), False)
     assert found.scatter > 1.3 * collapse(set_of(synthetic(0, 0.02))).scatter
@@ -82,7 +82,7 @@ def test_runs_of_other_specimens_have_a_factor_of_their_own_near_1() -> None:
     assert found.ts_c == pytest.approx(TS_C, abs=0.5) and found.scatter < 0.015
 
 
-def test_too_few_conditions_are_refused_with_what_is_expected() -> None:
+def test_too_few_conditions_are_refused_with_the_expected_number() -> None:
     with pytest.raises(MasterError, match="8 conditions are too few for a curve"):
         collapse(set_of(synthetic(0, 0.0)[:8]))
     with pytest.raises(MasterError, match="no condition"):
@@ -97,7 +97,7 @@ def test_the_arrays_are_in_order_of_temperature_and_speed() -> None:
     assert np.allclose(shifts(found.celsius, TS_C)[:9], shifts(np.array([-5.0]), TS_C))
 
 
-def test_factors_of_two_runs_are_held_by_what_is_known_of_them() -> None:
+def test_factors_of_two_runs_are_bounded_by_their_known_errors() -> None:
     """Least squares by hand: of a difference d the factors take n / (n + (PILOT / gain)^2), here one half."""
     made = synthetic(0, 0.0)
     gain, d = PILOT / np.sqrt(len(made)), 0.004

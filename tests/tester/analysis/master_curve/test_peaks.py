@@ -67,7 +67,7 @@ def test_a_rule_follows_the_temperature_by_the_rubbers_shift() -> None:
     assert isnan(rules_of(RUBBER, 20.0, ())[0].decades)
 
 
-def test_a_maximum_at_the_end_of_what_is_known_is_none() -> None:
+def test_a_maximum_at_the_end_of_the_data_does_not_count() -> None:
     class Narrow:
         def complex_pa(self, rate_rad_s: np.ndarray, temperature_c: float) -> np.ndarray:
             if not 1.0 <= rate_rad_s[0] <= 1e5:

@@ -34,6 +34,6 @@ def test_knots_stand_at_quantiles() -> None:
     assert [int(np.sum(X < one)) for one in inner] == [20, 40, 60]  # noqa: SIM300
 
 
-def test_columns_that_say_nothing_new_drop_out() -> None:
+def test_redundant_columns_drop_out() -> None:
     one = np.ones((10, 1))
     assert orthonormal(np.hstack([one, 2.0 * one, np.arange(10.0)[:, None]])).shape == (10, 2)

@@ -66,7 +66,7 @@ def test_a_set_that_is_none_does_not_with_the_reason(how: Mapping[str, object], 
         assert judged.verdict is Verdict.DOES_NOT and any(reason in one for one in judged.reasons), judged
 
 
-def test_a_power_law_cannot_tell_for_it_collapses_at_any_shift() -> None:
+def test_a_power_law_gives_no_verdict_because_it_collapses_at_any_shift() -> None:
     judged = made(synthetic(0, 0.02, power=0.2)).judged
     assert judged.verdict is Verdict.OPEN
     assert "a power law in v collapses at any shift" in judged.reasons[0]
@@ -88,7 +88,7 @@ def test_a_ts_that_is_given_wrongly_does_not_collapse() -> None:
     assert master_of(synthetic(0, 0.02), 20.0, 0.0).judged.verdict is Verdict.DOES_NOT
 
 
-def test_on_a_master_curve_warming_does_what_slowing_does() -> None:
+def test_on_a_master_curve_warming_equals_slowing() -> None:
     found = signs_of(synthetic(0, 0.0))
     assert found.cells > 50 and found.same <= 0.05 * found.cells
 

@@ -115,7 +115,7 @@ def test_the_fitted_law_is_the_simulators(law: Law, parameters: tuple[float, ...
     (WLF_BELL, (0.5, 2.2, 3.0, 1.74e-3, -3.0), WlfBell(WlfBellParameters()).mu),
     (POWER, (0.9, 0.2, -0.15), PowerLaw(PowerParameters(a=0.9, n=0.2, m=-0.15)).mu),
 ])  # fmt: skip
-def test_what_was_put_in_comes_back(law: Law, truth: tuple[float, ...], mu: Value) -> None:
+def test_the_fit_recovers_the_true_parameters(law: Law, truth: tuple[float, ...], mu: Value) -> None:
     speeds = (1e-6, 1e-5, 1e-4, 1e-3, 1e-2) if law is WLF_BELL else SPEEDS_M_S
     assert fitted(law, points(mu, speeds), 9).parameters == pytest.approx(truth, rel=1e-5)
 
