@@ -73,7 +73,7 @@ GOOD = repeat(0.70)
 REFUSED = repeat(0.80, status=RepeatStatus.REFUSED)
 
 
-def test_the_left_out_repeats_are_the_invalid_ones() -> None:
+def test_left_out_repeats_are_made_minus_valid() -> None:
     assert Counts(3, 5, 3).left_out == 2
 
 

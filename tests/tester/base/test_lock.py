@@ -113,7 +113,7 @@ def test_a_lock_file_that_does_not_last_goes_with_its_holder(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("text", ["", "[]", '{"pid": "x"}', "\x00\x01", '{"pid": 12'])
-def test_an_empty_lock_file_still_locks(tmp_path: Path, text: str) -> None:
+def test_a_lock_file_without_a_holder_still_locks(tmp_path: Path, text: str) -> None:
     (tmp_path / ".lock").write_text(text)
     assert user_of(tmp_path / ".lock") is None
     with ExclusiveUse() as use:

@@ -238,7 +238,7 @@ def test_a_broken_progress_line_is_noticed_although_a_thread_draws_it(monkeypatc
         console.end()
 
 
-def test_a_question_for_a_quantity_shows_an_example(keyboard: Typed, capsys: Output) -> None:
+def test_a_question_for_a_quantity_shows_the_input_format(keyboard: Typed, capsys: Output) -> None:
     prompts = Prompts(person="anna")
     prompt = prompts.ask(0.0, "install wheel 1", unit="Shore A")
     console = Console(as_json=False, answer_yes=False)

@@ -153,7 +153,7 @@ def test_the_figure_is_drawn(home: Path, capsys: pytest.CaptureFixture[str], end
     (["--ts", "warm"], "--ts: "),
     (["--load", "2 kg"], "--load: "),
 ])  # fmt: skip
-def test_options_without_effect_are_usage_errors(
+def test_meaningless_options_are_usage_errors(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
 ) -> None:
     assert told in said(capsys, str(made_track_run(home / "one")), *arguments, code=2)[1]

@@ -84,11 +84,11 @@ def test_a_law_of_figures_takes_those_of_the_simulated_track(capsys: pytest.Capt
         (["predict", "--compound", "1#", *POINT[3:], "--components"], "law paper has neither parts nor a table"),
     ],
 )
-def test_what_cannot_be_said_is_a_usage_error(capsys: pytest.CaptureFixture[str], words: list[str], said: str) -> None:
+def test_impossible_options_are_usage_errors(capsys: pytest.CaptureFixture[str], words: list[str], said: str) -> None:
     assert said in refused(capsys, *words)
 
 
-def test_moduli_that_are_held_on_are_told(
+def test_moduli_held_beyond_their_table_are_reported(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
@@ -108,7 +108,7 @@ def test_moduli_that_are_held_on_are_told(
     assert "extrapolated" in capsys.readouterr().err
 
 
-def test_a_table_says_what_it_takes_and_by_how_much_it_is_off(
+def test_a_table_reports_its_time_and_its_error(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def at_once(slow: tabulated.LawOfParts, span: TableSpan) -> tuple[TabulatedLaw, object, object]:
@@ -134,7 +134,7 @@ WARNED = ("--compound", "SBR", "--load", "20 N")
          "-60 degC is below the glass transition of SBR"),
     ],
 )  # fmt: skip
-def test_outside_of_what_a_law_knows_a_warning_names_the_bound(
+def test_outside_the_range_of_a_law_a_warning_names_the_bound(
     capsys: pytest.CaptureFixture[str], words: tuple[str, ...], warning: str
 ) -> None:
     assert invoke(["predict", *WARNED, *words]) == 0
@@ -142,12 +142,12 @@ def test_outside_of_what_a_law_knows_a_warning_names_the_bound(
     assert line.startswith("warning: ")
 
 
-def test_inside_of_what_a_law_knows_nothing_is_printed_beside_the_value(capsys: pytest.CaptureFixture[str]) -> None:
+def test_inside_the_range_of_a_law_nothing_is_printed_beside_the_value(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["predict", *WARNED, "--law", "wlf_bell", "--slip", "1 mm/s", "--temperature", "20 degC"]) == 0
     assert capsys.readouterr().err == ""
 
 
-def test_a_full_contact_is_beyond_what_greta_knows(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_full_contact_is_outside_the_range_of_greta(capsys: pytest.CaptureFixture[str]) -> None:
     at = ["--compound", "tread", "--law", "greta", "--surface", "road", "--slip", "1 m/s", "--temperature", "25 degC"]
     assert invoke(["predict", *at, "--load", "20 N"]) == 0
     assert "the contact is full" not in capsys.readouterr().err

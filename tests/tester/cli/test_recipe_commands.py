@@ -24,7 +24,7 @@ def write(folder: Path, text: str) -> str:
     return "r.yaml"
 
 
-def test_check_says_that_a_packaged_recipe_is_valid(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_check_reports_that_a_packaged_recipe_is_valid(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["check", "quickstart"]) == 0
     out, err = capsys.readouterr()
     assert out == 'recipes/quickstart.yaml: valid on rig "simulated rubber friction tester", 2 conditions\n'
@@ -63,7 +63,9 @@ MERGED = [{
 
 
 @pytest.mark.parametrize("command", ["check", "plan"])
-def test_what_two_grids_share_is_reported(command: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_conditions_shared_by_two_grids_are_reported(
+    command: str, folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     name = write(folder, SHARED)
     assert invoke([command, name]) == 0
     assert "grid b shares 1 condition with grid load" in capsys.readouterr().out
@@ -72,7 +74,7 @@ def test_what_two_grids_share_is_reported(command: str, folder: Path, capsys: py
     assert (data["merged"], data["conditions"]) == (MERGED, 4)
 
 
-def test_what_is_measured_again_is_not(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_conditions_measured_again_are_not(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["check", write(folder, SHARED.replace("name: b", "name: b, measure_again: true"))]) == 0
     out = capsys.readouterr().out
     assert "5 conditions" in out and "shares" not in out
@@ -88,7 +90,7 @@ def test_an_invalid_rig_file_exits_3(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("text", ["[" * 60_000, "a: 1\na: 2\n", "", "recipe: \x07\n"])
-def test_plan_refuses_what_check_refuses(folder: Path, text: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plan_and_check_refuse_the_same_recipes(folder: Path, text: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", write(folder, text)]) == 3
     assert capsys.readouterr().err.startswith("r.yaml:")
 
@@ -116,12 +118,12 @@ def test_schema_prints_the_packaged_schema(folder: Path, capsys: pytest.CaptureF
     assert schema["required"] == ["recipe", "specimens"]
 
 
-def test_plan_says_how_many_wheels_tell_two_compounds_apart(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plan_prints_how_many_wheels_separate_two_compounds(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", "quickstart"]) == 0
     assert "to tell 10 % takes 3, 5 % takes 9 wheels each (replicates; here 1)" in capsys.readouterr().out
 
 
-def test_plan_says_what_a_precision_takes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_plan_prints_the_cost_of_a_precision(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", "quickstart", "--precision", "2%"]) == 0
     out = capsys.readouterr().out
     assert "repeatability     2 % (type A, expanded, 95 %)" in out
@@ -146,9 +148,7 @@ def test_plan_gives_the_rig_time_with_its_range(folder: Path, capsys: pytest.Cap
     assert data["rig_seconds_low"] < data["rig_seconds"] < data["rig_seconds_high"]
 
 
-def test_plan_refuses_a_total_below_what_the_instruments_have(
-    folder: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_plan_refuses_a_total_below_that_of_the_instruments(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["plan", "quickstart", "--total", "0.5%"]) == 2
     out, err = capsys.readouterr()
     assert out == ""
@@ -160,7 +160,7 @@ def test_a_precision_that_makes_no_sense_is_a_usage_error(folder: Path, argument
     assert invoke(["plan", "quickstart", *arguments]) == 2
 
 
-def test_check_says_which_keys_of_the_rig_take_the_packaged_value(
+def test_check_lists_the_keys_of_the_rig_that_take_the_packaged_value(
     folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     path = folder / "rig.yaml"

@@ -33,7 +33,7 @@ def again_and_again(talk: Callable[[], object]) -> Iterator[None]:
     thread.join()
 
 
-def test_a_bus_is_written_down_with_who_sent_what(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_bus_is_recorded_with_the_sender_of_each_frame(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     with can.Bus(interface="virtual", channel="record") as bus:
 
         def talk() -> None:
@@ -77,7 +77,7 @@ def test_silence_is_no_record(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     "arguments", [[], ["--can", "can0"], ["--line", "heat"], ["--line", "heat=/dev/ttyUSB0"], ["--line", "a/b=c@9600"]]
 )
-def test_what_cannot_be_listened_to_is_a_usage_error(arguments: list[str], tmp_path: Path) -> None:
+def test_a_bus_that_cannot_be_recorded_is_a_usage_error(arguments: list[str], tmp_path: Path) -> None:
     assert invoke(["bus", "record", str(tmp_path / "r"), *arguments]) == 2
 
 

@@ -29,7 +29,7 @@ def out(capsys: pytest.CaptureFixture[str], *arguments: str, code: int = 0) -> s
     return captured.err if code else captured.out
 
 
-def test_a_report_is_written_and_its_name_told(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_report_is_written_and_its_name_printed(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib", reason="needs the extra `report`")
     assert out(capsys, "one").splitlines() == [str(Path("reports") / "one.html")]
     text = (home / "reports" / "one.html").read_text(encoding="utf-8")
@@ -37,7 +37,7 @@ def test_a_report_is_written_and_its_name_told(home: Path, capsys: pytest.Captur
     assert "belief" not in text and "geometry.touch" not in text  # the made-up rig file has none of the packaged keys
 
 
-def test_a_report_of_several_runs_goes_where_it_is_told(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_report_of_several_runs_goes_to_the_given_path(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     pytest.importorskip("matplotlib", reason="needs the extra `report`")
     made_run(home / "runs" / "two", [(25.0, 100.0, 0.3), (25.0, 200.0, 0.3)])
     assert out(capsys, "one", "two", "one", "--out", "sent/both.html").splitlines() == [str(Path("sent") / "both.html")]

@@ -29,7 +29,7 @@ def invoke(command: object, *arguments: str) -> Result:
     return CliRunner().invoke(command, list(arguments), prog_name="tester")  # type: ignore[arg-type]
 
 
-def test_show_tells_status_rig_time_and_values(home: Path) -> None:
+def test_show_prints_status_rig_time_and_values(home: Path) -> None:
     lines = invoke(show, "one").stdout.splitlines()
     assert lines[0] == "one: Small, two loads"
     assert lines[1] == "status   done"
@@ -43,7 +43,7 @@ def test_show_tells_status_rig_time_and_values(home: Path) -> None:
     assert lines[8].startswith("extended (note): A repeat collected more revolutions")
 
 
-def test_show_tells_which_extensions_a_run_had_loaded(home: Path) -> None:
+def test_show_prints_the_extensions_that_a_run_had_loaded(home: Path) -> None:
     (home / "runs" / "two").mkdir()
     writer = open_writer(home / "runs" / "two")
     extension = {"extension laws/acme": "acme 1.2, acme.law:LAW, sha256 00ff"}
@@ -61,7 +61,7 @@ def test_show_as_json(home: Path) -> None:
     assert shown["missing"] == []
 
 
-def test_show_tells_a_trip_with_its_value_and_who_acknowledged_it(home: Path) -> None:
+def test_show_prints_a_trip_with_its_value_and_its_acknowledger(home: Path) -> None:
     (home / "runs" / "two").mkdir()
     writer = open_writer(home / "runs" / "two")
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
@@ -78,7 +78,7 @@ def test_show_tells_a_trip_with_its_value_and_who_acknowledged_it(home: Path) ->
     assert (second["value"], second["acknowledged_utc"]) == (None, None)
 
 
-def test_show_names_what_has_no_value(home: Path) -> None:
+def test_show_names_conditions_without_a_value(home: Path) -> None:
     small_run(home / "runs" / "two", ([nan] * 3, [0.73, 0.74, 0.72]))
     shown = invoke(show, "two").stdout
     assert "1 of 2 conditions has a value; none carries a doubt, 1 carries a note (extended)." in shown
@@ -109,12 +109,12 @@ def test_a_doubt_is_in_json(stopped: str) -> None:
     assert (first["mark"], second["mark"]) == ("?", "") and "carry-over" in first["flags"]
 
 
-def test_a_doubt_about_a_value_of_the_appendix_is_told(stopped: str) -> None:
+def test_a_doubt_about_a_value_of_the_appendix_is_reported(stopped: str) -> None:
     told = invoke(export, stopped, "--format", "appendix").stderr.splitlines()
     assert told[-1].startswith("to be taken with care: 1#, 300 mm/s") and "pre_grind" in told[-1]
 
 
-def test_export_writes_to_stdout_what_the_run_folder_holds(home: Path) -> None:
+def test_export_writes_the_file_of_the_run_folder_to_stdout(home: Path) -> None:
     from tester.results.run_files import write_all
 
     write_all(home / "runs" / "one")
@@ -198,13 +198,13 @@ def test_text_of_a_recipe_cannot_drive_the_terminal(home: Path) -> None:
     assert "\x1b" not in invoke(runs).stdout + invoke(show, "two").stdout
 
 
-def test_show_tells_both_uncertainties_and_of_what_they_are(home: Path) -> None:
+def test_show_prints_both_uncertainties_with_their_measurands(home: Path) -> None:
     (measured,) = (line for line in invoke(show, "one").stdout.splitlines() if line.startswith("1#         300   100"))
     first, _ = json.loads(invoke(show, "one", "--json").stdout)["conditions"]
     assert measured.split()[7:9] == [f"{first[key]:.3f}" for key in ("u_expanded", "u_expanded_compound")]
 
 
-def test_show_tells_the_budget_the_largest_term_first(home: Path) -> None:
+def test_show_prints_the_budget_with_the_largest_term_first(home: Path) -> None:
     lines = invoke(show, "one", "--budget").stdout.splitlines()
     assert lines[1].startswith("  U this wheel 0.0") and lines[2].startswith("  U compound 0.0")
     assert lines[3].split()[:3] == ["term", "df", "u(mu)"] and lines[4].split()[:3] == ["wheel", "to", "wheel"]

@@ -31,7 +31,7 @@ def said(*arguments: str) -> int:
     return invoke(["results", *arguments, "--operator", "ada [b]"])
 
 
-def test_it_says_what_the_condition_has_become(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_it_prints_the_new_result_of_the_condition(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert said("exclude", "one", "2/1", "--reason", "debris") == 0
     captured = capsys.readouterr()
     assert captured.out == "" and captured.err.startswith("2/1 excluded: 1#, 300 mm/s, 200 N, 25 degC: ok")
@@ -40,7 +40,7 @@ def test_it_says_what_the_condition_has_become(home: Path, capsys: pytest.Captur
         assert told.endswith("valid 3 of 3") and head == f"record head: {reader.record_head()}"
 
 
-def test_show_lists_every_word_with_who_and_why(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_lists_every_exclusion_with_person_and_reason(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert said("exclude", "one", "2/1", "--reason", "debris") == said("include", "one", "2/1", "--reason", "none") == 0
     assert invoke(["show", "one"]) == 0
     lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("2/1 ")]
@@ -66,7 +66,7 @@ def test_show_as_json_has_the_words_and_the_repeats_exclusion(home: Path, capsys
         (("include", "one", "2/1", "--reason", "x"), 1, "has not been excluded"),
     ],
 )
-def test_what_is_wrong_is_said(
+def test_mistakes_are_reported(
     arguments: tuple[str, ...], code: int, message: str, home: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["results", *arguments]) == code

@@ -25,7 +25,7 @@ def test_init_does_not_replace_a_file(tmp_path: Path) -> None:
     assert path.read_text(encoding="utf-8") == "mine"
 
 
-def test_init_replaces_a_file_when_told(tmp_path: Path) -> None:
+def test_init_replaces_a_file_on_request(tmp_path: Path) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text("mine", encoding="utf-8")
     assert invoke(["rig", "init", str(path), "--force"]) == 0
@@ -39,7 +39,7 @@ def test_init_into_a_folder_that_is_not_there_is_a_usage_error(
     assert "cannot be written" in capsys.readouterr().err
 
 
-def test_show_prints_what_reads_back_as_the_same_rig(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_output_of_show_reads_back_as_the_same_rig(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["rig", "show", "--set", "sim.noise=0.5"]) == 0
     path = tmp_path / "shown.yaml"
     path.write_text(capsys.readouterr().out, encoding="utf-8")
@@ -55,7 +55,7 @@ def test_show_of_a_file_that_is_not_there_exits_3(tmp_path: Path) -> None:
     assert invoke(["rig", "show", "--rig", str(tmp_path / "none.yaml")]) == 3
 
 
-def test_show_says_which_keys_take_the_packaged_value(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_lists_the_keys_that_take_the_packaged_value(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(hardware_text().replace("  pushed: ", "  # pushed: "), encoding="utf-8")
     assert invoke(["rig", "show", "--rig", str(path)]) == 0
@@ -99,7 +99,7 @@ def test_init_of_a_kind_or_a_packaged_rig_that_is_none_is_a_usage_error(
     assert said in capsys.readouterr().err and not (tmp_path / "rig.yaml").exists()
 
 
-def test_init_says_the_kind_in_the_file(tmp_path: Path) -> None:
+def test_init_writes_the_kind_into_the_file(tmp_path: Path) -> None:
     path = tmp_path / "rig.yaml"
     assert invoke(["rig", "init", str(path), "--kind", "wheel_on_belt", "--like", "sim"]) == 0
     assert load_rig(path).kind == "wheel_on_belt"

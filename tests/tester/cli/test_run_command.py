@@ -53,12 +53,12 @@ def test_with_json_records_come_first_and_the_bare_path_last(home: Path, capsys:
     assert Path(last).parent == Path("there") and (home / "bus" / "can.log").is_file()
 
 
-def test_a_recipe_that_is_none_is_the_first_thing_that_is_said(capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_invalid_recipe_is_reported_first(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["run", "quikstart", "--yes"]) == 2
     assert "on rig" not in (said := capsys.readouterr().err) and 'no recipe "quikstart"' in said
 
 
-def test_nobody_at_the_terminal_is_told_about_yes(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_without_a_terminal_the_error_mentions_yes(home: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["run", "short.yaml"]) == 2
     captured = capsys.readouterr()
     assert captured.out == "" and "--yes" in captured.err

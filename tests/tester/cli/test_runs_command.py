@@ -43,7 +43,7 @@ def open_run(folder: Path, repeats: int = 2) -> Path:
     return folder
 
 
-def test_runs_lists_name_status_and_what_is_committed(home: Path) -> None:
+def test_runs_lists_name_status_and_committed_repeats(home: Path) -> None:
     result = invoke(runs)
     assert result.exit_code == 0
     assert result.stdout == "one  done  0:45:00  2 conditions, 6 repeats  Small, two loads\n"
@@ -65,7 +65,7 @@ def test_no_runs_are_an_empty_list(home: Path) -> None:
     assert listed("--out", "nowhere") == []
 
 
-def test_a_run_that_was_cut_off_says_what_is_committed(home: Path) -> None:
+def test_an_interrupted_run_lists_its_committed_repeats(home: Path) -> None:
     open_run(home / "runs" / "two")
     assert "two  interrupted, 2 of 6 repeats committed  " in invoke(runs).stdout
     assert [(run["run"], run["status"], run["can_resume"]) for run in listed("--status", "interrupted")] == [
@@ -73,7 +73,7 @@ def test_a_run_that_was_cut_off_says_what_is_committed(home: Path) -> None:
     ]
 
 
-def test_a_run_that_is_under_way_says_who_runs_it(home: Path) -> None:
+def test_a_run_under_way_names_its_process(home: Path) -> None:
     folder = open_run(home / "runs" / "two")
     with ExclusiveUse() as use:
         use.lock_file("two", folder / RUN_LOCK, "two", lasting=False)
@@ -151,7 +151,7 @@ def test_replicates_are_compared_by_their_mean(home: Path) -> None:
     assert (row["pieces_1"], row["difference"]) == (3, pytest.approx(0.1)) and row["differs"]
 
 
-def test_a_difference_within_what_chance_explains_is_not_called_one(home: Path) -> None:
+def test_a_difference_explained_by_chance_is_not_reported_as_one(home: Path) -> None:
     small_run(home / "runs" / "two", ([0.93, 0.94, 0.92], [0.73, 0.74, 0.72]))
     rows = json.loads(invoke(compare, "one", "two", "--json").stdout)
     assert not rows[0]["differs"] and abs(rows[0]["z"]) < rows[0]["k"]

@@ -22,13 +22,13 @@ from tests.tester.service.views import state
 pytestmark = [pytest.mark.skipif(not HAS_UNIX, reason="Unix sockets"), pytest.mark.usefixtures("folder")]
 
 
-def test_status_says_that_nothing_runs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_status_reports_that_nothing_runs(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["status"]) == 4
     out, err = capsys.readouterr()
     assert (out, err) == ("", "no service is running: start one with `tester serve`\n")
 
 
-def test_status_says_so_as_json_too(capsys: pytest.CaptureFixture[str]) -> None:
+def test_status_also_reports_it_as_json(capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["status", "--json"]) == 4
     assert json.loads(capsys.readouterr().out)["service"] is False
 
@@ -59,7 +59,7 @@ def test_stop_is_given_fast_where_that_is_asked(fake: FakeService) -> None:
     assert fake.presence.controller == ""
 
 
-def test_a_refusal_is_told_with_exit_code_1(fake: FakeService, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_refusal_is_reported_with_exit_code_1(fake: FakeService, capsys: pytest.CaptureFixture[str]) -> None:
     fake.refusals["hold"] = "nothing runs"
     assert invoke(["hold"]) == 1
     assert "refused: nothing runs" in capsys.readouterr().err
@@ -88,7 +88,7 @@ LEFT = [["--bus-log", "logs"], ["--fault", "t=1 s: belt jammed"], ["--jobs", "2"
 
 
 @pytest.mark.parametrize("option", LEFT, ids=" ".join)
-def test_run_detached_refuses_what_the_service_would_not_do(
+def test_run_detached_refuses_options_that_the_service_lacks(
     option: list[str], fake: FakeService, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["run", "quickstart", "--detach", *option]) == 2
@@ -125,7 +125,7 @@ COMMANDS = (["hold"], ["release"], ["ack"], ["run", "quickstart", "--detach"])
 
 
 @pytest.mark.parametrize("command", COMMANDS)
-def test_a_refusal_for_want_of_control_says_how_to_take_it(
+def test_a_refusal_for_want_of_control_explains_how_to_take_it(
     fake: FakeService, command: list[str], capsys: pytest.CaptureFixture[str]
 ) -> None:
     fake.results["run"] = {"run": "r", "folder": "runs/r"}

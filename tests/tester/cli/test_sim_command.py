@@ -70,7 +70,7 @@ def test_an_address_that_is_not_on_this_machine_is_refused(address: str, capsys:
     assert "--listen" in capsys.readouterr().err
 
 
-def test_a_taken_port_is_told(capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_taken_port_is_reported(capsys: pytest.CaptureFixture[str]) -> None:
     with socket.create_server(("127.0.0.1", 0)) as taken:
         assert invoke(["sim", "--listen", f"127.0.0.1:{taken.getsockname()[1]}"]) == 1
     assert "cannot listen" in capsys.readouterr().err

@@ -56,7 +56,7 @@ def told(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str]
         (["verify", "file"], 2, "no run file"),
     ],
 )
-def test_a_wrong_file_is_said_with_what_to_do(
+def test_a_wrong_file_is_reported_with_a_remedy(
     home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], code: int, words: str
 ) -> None:
     found, err = told(capsys, *arguments)
@@ -80,7 +80,7 @@ def refusing(number: int) -> Callable[..., None]:
         (errno.ENOSPC, "the disk is full: make room"),
     ],
 )
-def test_a_folder_that_takes_no_run_is_said(
+def test_a_folder_that_takes_no_run_is_reported(
     home: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch, number: int, words: str
 ) -> None:
     monkeypatch.setattr(os, "mkdir", refusing(number))
@@ -149,7 +149,7 @@ def test_closed_streams_are_no_trouble(home: Path, arguments: list[str]) -> None
 
 
 @pytest.mark.parametrize("arguments", [["tui"], ["replay", "one"]])
-def test_a_screen_without_a_terminal_is_refused_with_what_needs_none(home: Path, arguments: list[str]) -> None:
+def test_a_screen_without_a_terminal_is_refused_with_an_alternative(home: Path, arguments: list[str]) -> None:
     done = called(*arguments, capture_output=True, stdin=subprocess.DEVNULL)
     assert done.returncode == 2 and "needs a terminal, and there is none here; `tester s" in done.stderr
     assert "\x1b" not in done.stdout + done.stderr

@@ -28,14 +28,14 @@ def found(counted: dict[str, int] | None, state: str = "") -> list[Finding]:
     return list(errors(Looked(RigWatch(seconds=60.0, can_errors=counted, can_state=state))))
 
 
-def test_error_frames_are_told_by_kind_with_what_to_do() -> None:
+def test_error_frames_are_reported_by_kind_with_a_remedy() -> None:
     (finding,) = found({"no acknowledgement": 7, "bus error": 2})
     assert finding.severity is Severity.WARNING
     assert finding.found == "error frames in 60 s: 7 no acknowledgement, 2 bus error"
     assert "terminators" in finding.todo
 
 
-def test_none_are_told_too_and_an_adapter_that_passes_none_on_says_nothing() -> None:
+def test_their_absence_is_reported_except_for_an_adapter_that_never_passes_them_on() -> None:
     assert [(one.severity, one.found) for one in found({}, "active")] == [(Severity.OK, "no error frame in 60 s")]
     assert found(None) == []
 

@@ -30,7 +30,7 @@ def test_a_dump_has_every_device_with_its_identity() -> None:
     assert found.devices["load cell"]["0x0064"].value == str(0x4658)
 
 
-def test_a_dump_tells_what_every_connect_writes_from_what_stays() -> None:
+def test_a_dump_separates_parameters_of_every_connect_from_permanent_ones() -> None:
     belt = dump().devices["belt"]
     assert belt["0x6083:00"].written
     assert not belt["0x6076:00"].written
@@ -58,7 +58,7 @@ def test_a_file_that_is_no_dump_is_refused_by_its_name(tmp_path: Path, text: str
         read_dump(path)
 
 
-def test_a_parameter_that_was_changed_is_told_by_its_name_with_both_values() -> None:
+def test_a_changed_parameter_is_reported_by_its_name_with_both_values() -> None:
     before = dump()
     wires = SimulatedWires(RIG)
     wires.world.axes["press"].store.values[o.RATED_TORQUE, 0] = 1500
@@ -67,7 +67,7 @@ def test_a_parameter_that_was_changed_is_told_by_its_name_with_both_values() -> 
     assert not found.written
 
 
-def test_what_every_connect_writes_is_told_apart() -> None:
+def test_parameters_of_every_connect_are_marked() -> None:
     before = dump()
     wires = SimulatedWires(RIG)
     wires.world.axes["press"].store.values[o.PROFILE_ACCELERATION, 0] = 17

@@ -31,7 +31,7 @@ def look(wires: SimulatedWires, rig_name: str = "sim", *, everybody: bool = Fals
 
 
 @pytest.mark.parametrize("seed", [0, 1, 3])
-def test_nothing_is_wrong_with_a_rig_that_is_as_its_file_says(seed: int) -> None:
+def test_a_rig_that_matches_its_file_has_no_findings(seed: int) -> None:
     assert clean(seed) == []
 
 
@@ -41,7 +41,7 @@ def test_a_mistake_is_named(mistake: Mistake) -> None:
     assert mistake.disagrees(3) == ""
 
 
-def test_every_finding_that_is_bad_says_what_to_do() -> None:
+def test_every_bad_finding_has_a_remedy() -> None:
     keys = ("lines.heat.baud=9600", "axes.belt.node_id=12")
     found = Case(Written("several", "", machine=keys, computer={"free_bytes": 0, "missing": True}), 0).findings()
     bad = [finding for finding in found if finding.severity >= Severity.WARNING]
@@ -70,7 +70,7 @@ def test_the_look_moves_nothing_and_enables_no_drive() -> None:
     assert all(drive.axis.still and not drive.energised for drive in wires.world.axes.values())
 
 
-def test_another_kind_of_rig_is_looked_at_too() -> None:
+def test_another_kind_of_rig_is_also_checked() -> None:
     rig = load_rig("grosch")
     wires = SimulatedWires(rig)
     lines = look(wires, "grosch")
@@ -79,7 +79,7 @@ def test_another_kind_of_rig_is_looked_at_too() -> None:
     assert any(line.split()[1] == "chamber:" and "(the rig file allows 2500 ms)" in line for line in lines)
 
 
-def test_what_costs_time_is_done_once() -> None:
+def test_slow_checks_are_done_once() -> None:
     wires = SimulatedWires(load_rig("sim"))
     told: list[str] = []
     examination = Examination(
@@ -90,7 +90,7 @@ def test_what_costs_time_is_done_once() -> None:
     assert len(told) == 2 + len(examination.rig.lines)
 
 
-def test_a_profile_that_lacks_an_object_of_the_set_up_is_told_all_at_once() -> None:
+def test_all_set_up_objects_missing_from_a_profile_are_reported_at_once() -> None:
     wires = SimulatedWires(load_rig("sim"))
     examination = Examination(load_rig("sim"), FakeComputer(), wires, seconds=WATCHED_S, everybody=False)
     objects = {node: dict(answers) for node, answers in examination.can.objects.items()}
@@ -116,7 +116,7 @@ def test_the_probes_stand_in_the_table_once() -> None:
         ("guard opened", "not armed: guard open"),
     ],
 )
-def test_what_a_run_would_refuse_is_a_fault_in_the_runs_own_words(fault: str, why: str) -> None:
+def test_a_refusal_by_a_run_is_a_fault_in_the_runs_own_words(fault: str, why: str) -> None:
     case = Case(Written(fault, "", faults=(fault,)), 2)
     found = case.findings()
     (run,) = [finding for finding in found if finding.subject == "run"]
@@ -140,7 +140,7 @@ def test_the_makers_profile_is_named_and_no_value_in_another_makers_unit() -> No
     assert not any("correct axes.wheel.rated_torque" in finding.todo for finding in about)
 
 
-def test_a_rig_of_which_nothing_answers_is_not_watched() -> None:
+def test_a_silent_rig_is_not_watched() -> None:
     drives = [f"{name} drive without supply" for name in ("wheel", "belt", "press", "sideslip", "camber")]
     devices = [f"{name} without supply" for name in ("load cell", "thermometer", "jacket")]
     case = Case(Written("dark", "", faults=(*drives, *devices)), 0)

@@ -56,7 +56,7 @@ def test_a_port_that_may_not_be_used_names_the_group_to_join() -> None:
     assert "usermod -a -G dialout" in refused.todo
 
 
-def test_a_port_that_nobody_uses_is_noted() -> None:
+def test_an_unused_port_is_noted() -> None:
     computer = FakeComputer()
     computer.ports["/dev/serial/by-id/other"] = type(computer.ports[CELL])("/dev/ttyUSB7", "CP2102")
     assert any("/dev/ttyUSB7 (CP2102)" in str(finding) for finding in found(host_probes.serial_ports, computer))
@@ -73,7 +73,7 @@ def test_a_latency_timer_of_16_ms_names_the_device_manager_on_windows() -> None:
     assert "Device Manager" in slow.todo
 
 
-def test_a_port_without_a_latency_timer_says_nothing() -> None:
+def test_a_port_without_a_latency_timer_gives_no_finding() -> None:
     assert found(host_probes.latency_timers, FakeComputer(latency={})) == []
 
 
@@ -103,7 +103,7 @@ def test_a_can_interface_that_is_not_there_is_named_with_those_that_are() -> Non
     ]
 
 
-def test_a_can_interface_that_tells_no_bit_rate_is_no_warning() -> None:
+def test_a_can_interface_without_a_bit_rate_is_no_warning() -> None:
     assert bad(found(host_probes.can_adapter, FakeComputer(outputs={}))) == []
 
 
@@ -136,7 +136,7 @@ def test_a_run_folder_that_cannot_be_written_is_a_fault() -> None:
     ("outputs", "severity"),
     [({"timedatectl": "yes\n"}, Severity.OK), ({"timedatectl": "no\n"}, Severity.NOTE), ({}, Severity.NOTE)],
 )
-def test_the_clock_is_said_to_be_set_or_not(outputs: dict[str, str], severity: Severity) -> None:
+def test_the_clock_is_reported_as_set_or_not(outputs: dict[str, str], severity: Severity) -> None:
     (finding,) = found(host_probes.clock, FakeComputer(outputs=outputs))
     assert finding.severity is severity
 
@@ -153,7 +153,7 @@ def punctual(late_s: list[float]) -> Iterator[Finding]:
     return host_probes.punctuality(Timed(late_s))
 
 
-def test_a_punctual_computer_is_told_with_the_limits_it_supports() -> None:
+def test_a_punctual_computer_is_reported_with_the_limits_it_supports() -> None:
     (finding,) = punctual([0.001] * 999 + [0.004])
     assert finding.severity is Severity.OK
     assert "at most 4.0 ms late" in finding.found
@@ -177,7 +177,7 @@ def test_in_simulated_time_the_computer_is_not_timed() -> None:
     assert finding.severity is Severity.NOTE
 
 
-def test_keys_that_the_rig_file_lacks_are_told() -> None:
+def test_keys_that_the_rig_file_lacks_are_reported() -> None:
     examination = Examination(RIG, FakeComputer(), SimulatedWires(RIG), packaged_keys=("interlocks.pushed",))
     (finding,) = host_probes.rig_file(examination)
     assert "interlocks.pushed" in finding.found

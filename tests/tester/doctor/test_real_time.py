@@ -43,11 +43,11 @@ def bad(machine: Machine, **changes: object) -> list[str]:
     return [str(one) for one in findings if one.severity >= Severity.WARNING and one.subject not in OF_THE_COMPUTER]
 
 
-def test_a_rig_behind_sockets_that_is_as_its_file_says_has_no_fault(machine: Machine) -> None:
+def test_a_rig_behind_sockets_that_matches_its_file_has_no_fault(machine: Machine) -> None:
     assert [line for line in bad(machine) if line.startswith("fault")] == []
 
 
-def test_a_second_master_is_heard_over_the_socket(machine: Machine) -> None:
+def test_a_second_master_is_detected_over_the_socket(machine: Machine) -> None:
     machine.server.rig.can.beat(Beat(0x080, b"", 0.05), 0.0)
     assert any("another master is sending: SYNC" in line for line in bad(machine))
 

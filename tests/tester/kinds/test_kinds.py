@@ -37,7 +37,7 @@ def test_a_packaged_kind_is_found_by_its_name_and_ships_rigs_of_itself(name: str
 
 
 @pytest.mark.parametrize("name", PACKAGED)
-def test_what_a_packaged_kind_names_by_its_place_is_there(name: str) -> None:
+def test_modules_named_by_a_packaged_kind_exist(name: str) -> None:
     kind = find(name)
     asked = {one.name: getattr(kind, one.name) for one in fields(kind)}
     assert all(found() is not None for found in asked.values() if callable(found))
@@ -45,7 +45,7 @@ def test_what_a_packaged_kind_names_by_its_place_is_there(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["wheel", "no.such:kind", "a/path.py", "tester.kinds:PACKAGED"])
-def test_what_is_no_kind_is_refused(name: str) -> None:
+def test_an_invalid_kind_is_refused(name: str) -> None:
     with pytest.raises(UnknownKindError):
         find(name)
 
@@ -60,7 +60,7 @@ def test_a_file_without_a_kind_is_a_wheel_on_a_belt() -> None:
     assert load_rig_text(old) == load_rig()
 
 
-def test_a_file_of_a_kind_that_is_none_is_told_with_its_place(tmp_path: Path) -> None:
+def test_a_file_of_an_invalid_kind_is_reported_with_its_place(tmp_path: Path) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(packaged_text().replace("kind: wheel_on_belt ", "kind: wheel_on_bolt "), encoding="utf-8")
     with pytest.raises(InvalidSource, match=r"rig.yaml:10:7: kind: .*did you mean wheel_on_belt\?"):

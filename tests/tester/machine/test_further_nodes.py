@@ -75,7 +75,7 @@ def test_another_device_under_its_node_id_is_refused() -> None:
         ("can.nodes.climate.period=0.1 ms", "loads the CAN bus"),
     ],
 )
-def test_a_mistake_in_the_rig_file_is_told(override: str, message: str) -> None:
+def test_a_mistake_in_the_rig_file_is_reported(override: str, message: str) -> None:
     with pytest.raises(InvalidSource) as found:
         load_rig("sim", [NODE, override])
     assert message in "\n".join(map(str, found.value.problems))

@@ -31,7 +31,7 @@ def test_a_beginning_names_the_run_that_alone_begins_so(tmp_path: Path) -> None:
         find_run("2024-02-22", tmp_path)
 
 
-def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_run_is_refused(tmp_path: Path) -> None:
     (tmp_path / "empty").mkdir()
     with pytest.raises(StoreError, match="no run empty"):
         find_run("empty", tmp_path)

@@ -87,7 +87,7 @@ def test_a_law_that_does_not_describe_its_data_is_doubted(tmp_path: Path, word: 
         ('content: "', 'content: "x', "content"),
     ],
 )
-def test_what_is_wrong_is_refused_at_its_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_mistakes_are_refused_at_their_place(tmp_path: Path, old: str, new: str, said: str) -> None:
     text = example_text()
     assert old in text
     with pytest.raises(InvalidSource) as raised:

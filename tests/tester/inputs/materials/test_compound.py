@@ -60,7 +60,7 @@ def test_a_name_is_enough(tmp_path: Path) -> None:
     assert (one.model.name, one.holds(), one.file.doubts) == ("9#", "no moduli", ())
 
 
-def test_every_problem_is_told_at_once_with_its_place(tmp_path: Path) -> None:
+def test_every_problem_is_reported_at_once_with_its_place(tmp_path: Path) -> None:
     text = FULL.replace("hardness: 64", "hardnes: 64").replace("1120 kg/m3", "1.12").replace("-53 degC", "-53 K")
     problems = refused(tmp_path, text)
     assert [one.split(": ", 1)[0] for one in problems] == ["c.yaml:6:10", "c.yaml:7:1", "c.yaml:8:5"]
@@ -119,7 +119,7 @@ def test_a_row_of_another_length_is_refused(tmp_path: Path) -> None:
         ("temperature degC, colour Hz, E' MPa, E'' MPa", '"colour Hz" is no heading'),
     ],
 )
-def test_columns_that_do_not_say_all_are_refused(tmp_path: Path, columns: str, said: str) -> None:
+def test_incomplete_columns_are_refused(tmp_path: Path, columns: str, said: str) -> None:
     text = FULL.replace("temperature degC, frequency Hz, E' MPa, E'' MPa", columns)
     assert any(said in one for one in refused(tmp_path, text))
 
@@ -142,13 +142,13 @@ def test_a_file_beside_is_read_and_kept_with_its_hash(tmp_path: Path) -> None:
     assert data.name == "dma.csv" and len(data.sha256) == 64
 
 
-def test_problems_of_a_file_beside_are_told_at_its_own_lines(tmp_path: Path) -> None:
+def test_problems_of_a_file_beside_are_reported_at_its_own_lines(tmp_path: Path) -> None:
     (tmp_path / "dma.csv").write_text("T [degC];f [Hz];E';E'' [MPa]\n1;1;1;1\n", encoding="utf-8")
     (problem,) = refused(tmp_path, "name: x\nmoduli: {file: {name: dma.csv}}\n")
     assert problem == 'dma.csv:1:1: "E\'" has no unit (expected Pa, kPa, MPa or GPa; units: {"E\'": Pa})'
 
 
-def test_doubts_name_what_is_doubtful(tmp_path: Path) -> None:
+def test_doubts_name_their_values(tmp_path: Path) -> None:
     assert doubts(tmp_path, FULL.replace("decade_k: 8\n", "")) == [
         "c.yaml:11:1: measured at 1 Hz alone, and decade_k is missing: 8 K a decade (paper G) counts"
     ]

@@ -88,7 +88,7 @@ def test_a_comma_that_may_mean_thousands_is_doubted() -> None:
     assert '"1,234" is read as 1.234: its comma may mean thousands' in doubt
 
 
-def test_angular_frequency_is_converted_and_said() -> None:
+def test_angular_frequency_is_converted_with_a_notice() -> None:
     table, found = read(text("Temp [degC];omega [rad/s];E' [MPa];E'' [MPa]", f"{{t}};{2 * pi};{{e}};{{l}}"))
     assert table.rows[0].frequency_hz == pytest.approx(1.0, rel=1e-12)
     assert "angular frequency: f = omega / 2 pi" in found.notes
@@ -100,7 +100,7 @@ def test_kelvin_is_converted() -> None:
     assert table.rows[0].storage_pa == 1e9
 
 
-def test_shear_moduli_become_those_of_tension_and_it_is_said() -> None:
+def test_shear_moduli_become_those_of_tension_with_a_notice() -> None:
     heads = "T [degC];f [Hz];G' [MPa];G'' [MPa]"
     table, found = read(text(heads), DmaOptions(poisson=0.45))
     assert table.rows[0].storage_pa == pytest.approx(2.9 * 1.5e9, rel=1e-12)
@@ -108,7 +108,7 @@ def test_shear_moduli_become_those_of_tension_and_it_is_said() -> None:
     assert "shear: E = 2 (1 + nu) G = 2.9 G, nu = 0.45" in found.notes
 
 
-def test_a_loss_modulus_is_made_of_tan_delta_where_it_is_missing_and_it_is_said() -> None:
+def test_a_missing_loss_modulus_is_made_of_tan_delta_with_a_notice() -> None:
     table, found = read(text("T [degC];f [Hz];E' [MPa];tan delta", "{t};1;{e};{tan}"))
     assert table.rows[0].loss_pa == pytest.approx(1.5e8, rel=1e-12)
     assert any("E'' is E' times tan delta" in note for note in found.notes)
@@ -126,14 +126,14 @@ def test_tan_delta_that_does_not_agree_is_doubted_with_its_worst_line() -> None:
     assert doubt.startswith("dma.csv:4:1: tan delta 0.15 is not E''/E' = 0.1") and "1 of 15 points" in doubt
 
 
-def test_a_missing_unit_is_asked_for_with_what_was_expected() -> None:
+def test_a_missing_unit_is_asked_for_with_the_expected_ones() -> None:
     problems = refused(text("Temperature;Frequency [Hz];Storage Modulus;E'' [MPa]"))
     assert len(problems) == 2
     assert '"Temperature" has no unit (expected degC or K; --unit "Temperature=degC")' in problems[1]
     assert '"Storage Modulus" has no unit (expected Pa, kPa, MPa or GPa' in problems[0]
 
 
-def test_a_unit_may_be_said() -> None:
+def test_a_unit_may_be_given() -> None:
     options = DmaOptions(units={"Storage Modulus": "kPa"})
     table, _ = read(text("T [degC];f [Hz];Storage Modulus;E'' [MPa]", "{t};1;{e}000;{l}"), options)
     assert table.rows[0].storage_pa == 1.5e9
@@ -158,18 +158,18 @@ def test_a_column_may_be_named() -> None:
     assert table.rows[0].storage_pa == 1.5e9 and found.doubts == []
 
 
-def test_a_heading_that_is_not_there_is_told_with_the_nearest() -> None:
+def test_a_missing_heading_is_reported_with_the_nearest() -> None:
     problems = refused(text(), DmaOptions(columns={"tan": "E'' [MP]"}))
     assert any('no heading "E\'\' [MP]", did you mean "E\'\' [MPa]"?' in problem for problem in problems)
 
 
-def test_what_is_missing_is_asked_for() -> None:
+def test_missing_columns_are_asked_for() -> None:
     problems = refused(text("T [degC];x;E' [MPa];y"))
     assert any("no column is recognised as frequency" in one and '--frequency "1 Hz"' in one for one in problems)
     assert any("loss modulus, or tan delta" in one for one in problems)
 
 
-def test_a_frequency_may_be_said_for_every_point() -> None:
+def test_a_frequency_may_be_given_for_every_point() -> None:
     table, _ = read(text("T [degC];x;E' [MPa];E'' [MPa]"), DmaOptions(frequency_hz=10.0))
     assert table.frequencies_hz == (10.0,)
 
@@ -184,7 +184,7 @@ def test_tension_and_shear_together_are_asked_about() -> None:
     assert any("moduli of tension (E) and of shear (G) are there" in one for one in problems)
 
 
-def test_a_modulus_that_does_not_say_its_deformation_is_doubted() -> None:
+def test_a_modulus_without_its_deformation_is_doubted() -> None:
     _, found = read(text("T [degC];f [Hz];Storage Modulus [MPa];Loss Modulus [MPa]"))
     (doubt,) = found.doubts
     assert "does not say of which deformation: taken for tension" in doubt.message
@@ -206,13 +206,13 @@ def test_cells_that_are_no_numbers_are_refused_each_with_its_line() -> None:
     assert [one.split(":")[1] for one in problems] == ["3", "4"]
 
 
-def test_letters_are_told_apart_by_their_case() -> None:
+def test_letters_are_distinguished_by_case() -> None:
     heads = "t [s];F [N];T [degC];f [Hz];E' [MPa];E'' [MPa]"
     table, found = read(text(heads, "0;9;{t};1;{e};{l}"))
     assert table.rows[0].temperature_c == -60.0 and table.rows[0].frequency_hz == 1.0 and found.doubts == []
 
 
-def test_a_frequency_with_noise_may_be_said() -> None:
+def test_a_frequency_with_noise_may_be_given() -> None:
     content = text(row="{t};1.00{e};{e};{l}")
     table, _ = read(content)
     assert len(table.frequencies_hz) > 1

@@ -36,7 +36,7 @@ def test_the_plateaus_are_those_of_tension() -> None:
     assert (facts().rubber_pa, facts().glass_pa) == (pytest.approx(2.4e6), pytest.approx(2.7e9))
 
 
-def test_they_are_told_by_the_labels_of_a_sweep() -> None:
+def test_they_have_the_labels_of_a_sweep() -> None:
     told = dict(formula_words(facts()))
     assert list(told) == ["tan peak", "E0", "Einf", "Einf/E0", "shift"]
     assert told["E0"] == "2.4 MPa, by the formula" and told["Einf/E0"] == "1125"

@@ -58,14 +58,14 @@ def test_a_name_twice_in_a_folder_is_refused_with_both_files(tmp_path: Path) -> 
     assert library.path("compound", "SBR") is not None
 
 
-def test_an_unknown_name_says_where_was_looked_and_what_is_near(tmp_path: Path) -> None:
+def test_an_unknown_name_is_reported_with_the_searched_folders_and_near_names(tmp_path: Path) -> None:
     with pytest.raises(UnknownMaterialError, match=r'"SBB", did you mean "SBR"\? \(looked in .*compounds'):
         Library([tmp_path, recipes.FOLDER]).rubber("SBB")
     with pytest.raises(UnknownMaterialError, match='no file of a surface has the name "moon"'):
         Library([recipes.FOLDER]).surface("moon")
 
 
-def test_a_file_without_a_name_is_told(tmp_path: Path) -> None:
+def test_a_file_without_a_name_is_reported(tmp_path: Path) -> None:
     path = compound(tmp_path, "a.yaml", "x")
     path.write_text("note: no name\n", encoding="utf-8")
     assert [*nameless(Library([tmp_path]))] == [path]
@@ -112,7 +112,7 @@ def test_several_frequencies_go_by_the_glass_transition(tmp_path: Path) -> None:
         Library([tmp_path]).rubber("T")
 
 
-def test_beyond_its_points_a_table_holds_where_its_file_says_so(tmp_path: Path) -> None:
+def test_beyond_its_points_a_table_holds_where_its_file_states_it(tmp_path: Path) -> None:
     text = table((1.0,)).replace("moduli:\n", "moduli:\n  beyond: hold\n")
     compound(tmp_path, "t.yaml", "T", text)
     (modulus,) = Library([tmp_path]).rubber("T").modulus.complex_pa(np.array([1e30]), 0.0)

@@ -36,7 +36,7 @@ def test_a_sound_sweep_has_neither() -> None:
     assert found_in(sweep()) == ([], [])
 
 
-def test_negative_moduli_and_no_frequency_are_each_told() -> None:
+def test_negative_moduli_and_a_missing_frequency_are_each_reported() -> None:
     rows = sweep()
     rows[1] = ModuliRow(-55.0, 1.0, -1.0, 1.0)
     rows[2] = ModuliRow(-50.0, 1.0, 1e9, -5.0)
@@ -72,7 +72,7 @@ def test_swapped_temperature_and_frequency_are_doubted_where_temperatures_go_in_
     assert problems == [] and any("are temperature and frequency swapped?" in one for one in doubts)
 
 
-def test_a_point_that_stands_twice_is_refused_with_both_lines() -> None:
+def test_a_duplicate_point_is_refused_with_both_lines() -> None:
     problems, _ = found_in([*sweep(), sweep()[3]])
     assert problems == ["21: -45 degC and 1 Hz are already in line 4"]
 

@@ -46,7 +46,7 @@ def test_a_spectrum_arrives_in_si(tmp_path: Path) -> None:
         ("scan: {file: x.csv}", 'there is no file "x.csv" beside this one'),
     ],
 )
-def test_what_cannot_be_is_refused_at_its_line(tmp_path: Path, text: str, said: str) -> None:
+def test_impossible_values_are_refused_at_their_line(tmp_path: Path, text: str, said: str) -> None:
     problems = refused(tmp_path, f"name: x\n{text}\n")
     assert any(said in one and one.startswith("s.yaml:") for one in problems), problems
 
@@ -61,7 +61,7 @@ def test_a_table_of_a_spectrum_has_to_rise(tmp_path: Path) -> None:
     assert "too few (expected 2 or more)" in refused(tmp_path, "name: x\nradial: {rows: [[1, 1]]}\n")[0]
 
 
-def test_a_scan_beside_becomes_a_spectrum_and_says_how(tmp_path: Path) -> None:
+def test_a_scan_beside_becomes_a_spectrum_with_its_method(tmp_path: Path) -> None:
     heights = np.random.default_rng(1).normal(size=(32, 40))
     np.savetxt(tmp_path / "map.csv", heights, delimiter=";")
     one = loaded(tmp_path, "name: x\nscan: {file: map.csv, pixel: 2 um, unit: um, detrend: mean}\n")

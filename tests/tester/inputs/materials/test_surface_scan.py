@@ -76,7 +76,7 @@ def test_unit_and_pixel_are_asked_for() -> None:
     ]
 
 
-def test_what_was_taken_off_is_noted_and_a_map_without_its_long_waves_is_doubted() -> None:
+def test_removed_shapes_are_noted_and_a_map_without_its_long_waves_is_doubted() -> None:
     y, x = np.meshgrid(np.arange(64.0), np.arange(64.0), indexing="ij")
     found = Findings("m.csv")
     spectrum_of(HeightMap(np.sin(2 * np.pi * (x + y) / 8.0) * 1e-6, (1e-6, 1e-6)), "plane", found)
@@ -106,7 +106,7 @@ def test_sizes_and_unit_of_a_format_count(monkeypatch: pytest.MonkeyPatch) -> No
     assert found.doubts == []
 
 
-def test_what_a_person_says_against_the_file_is_doubted(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_statement_against_the_file_is_doubted(monkeypatch: pytest.MonkeyPatch) -> None:
     reader(monkeypatch, heights=lambda: GRID, physical_sizes=(20.0, 20.0), unit="mm")
     scan, found = read("", SAID, "m.al3d")
     assert scan.pixel_m == (1e-6, 1e-6)

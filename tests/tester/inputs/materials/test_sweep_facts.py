@@ -61,7 +61,7 @@ def test_the_intervals_are_not_wider_than_a_laboratory_can_use() -> None:
     assert np.median([peak.height.u for peak in found]) < 0.03
 
 
-def test_kelvins_a_decade_are_those_by_which_the_peaks_move() -> None:
+def test_kelvins_a_decade_match_the_shift_of_the_peaks() -> None:
     truly = np.polyfit([0.0, 1.0, 2.0], [place for place, _ in TRUTH.values()], 1)[0]
     found = [sweep_facts(table(seed, 0.01, hertz=tuple(TRUTH))).decade_k for seed in range(60)]
     assert all(one is not None for one in found)
@@ -126,7 +126,7 @@ def test_noise_in_the_frequency_makes_no_second_sweep() -> None:
     assert len(sweeps_of(noisy)) == 1
 
 
-def test_facts_are_told_with_their_units() -> None:
+def test_facts_are_shown_with_their_units() -> None:
     words = dict(fact_words(sweep_facts(table(0, 0.01, hertz=(1.0, 10.0)))))
     assert " degC, 10 Hz: the Tg of a DMA" in words["tan peak"] and "±" in words["tan peak"]
     assert " MPa, mean of 80 to 90 degC, 1 Hz" in words["E0"] and " MPa, mean of -80 to -70 degC" in words["Einf"]

@@ -57,7 +57,7 @@ def test_values_ascend_and_no_two_are_further_apart_than_asked(first: float, dec
 
 
 @given(begin=st.integers(-900, 900), step=st.integers(1, 99), count=st.integers(1, 50))
-def test_steps_are_what_a_person_writes(begin: int, step: int, count: int) -> None:
+def test_steps_are_the_written_ones(begin: int, step: int, count: int) -> None:
     ends = {"first": f"{begin / 10} deg", "to": f"{(begin + count * step) / 10} deg", "step": f"{step / 10} deg"}
     assert spread("deg", **ends) == [parse(f"{(begin + n * step) / 10} deg", "deg") for n in range(count + 1)]
 

@@ -31,16 +31,16 @@ def merged(text: str) -> list[MergedConditions]:
     return list(merged_of(recipe(text)))
 
 
-def test_what_two_grids_share_is_measured_in_the_first() -> None:
+def test_conditions_shared_by_two_grids_are_measured_in_the_first() -> None:
     assert listed(with_grids(""))[4:] == [("g1", 200.0, 55.0)]
 
 
-def test_a_grid_measures_again_what_another_has_too_where_it_says_so() -> None:
+def test_a_grid_measures_shared_conditions_again_on_request() -> None:
     assert listed(with_grids(AGAIN))[4:] == [("g1", 200.0, 40.0), ("g1", 200.0, 55.0)]
     assert merged(with_grids(AGAIN)) == []
 
 
-def test_what_is_measured_again_takes_nothing_from_a_later_grid() -> None:
+def test_conditions_measured_again_take_nothing_from_a_later_grid() -> None:
     assert listed(with_grids(AGAIN, ""))[6:] == [("g2", 200.0, 55.0)]
     (one,) = merged(with_grids(AGAIN, ""))
     assert (one.grid, one.measured_in) == ("g2", "load")
@@ -54,7 +54,7 @@ def test_a_plan_has_a_step_for_each_measurement_of_a_setting() -> None:
     assert len({one.row for one in twice}) == 2
 
 
-def test_what_is_merged_is_listed_by_grid_and_by_where_it_is_measured() -> None:
+def test_merged_conditions_are_listed_by_grid_and_by_measuring_grid() -> None:
     first, second = merged(with_grids("", ""))[0], merged(with_grids("", ""))[1:]
     assert (first.grid, first.measured_in, [one.number("temperature") for one in first.conditions]) == (
         "g1", "load", [40.0],
@@ -66,7 +66,7 @@ def test_grids_that_share_nothing_are_not_listed() -> None:
     assert merged(SMALL) == []
 
 
-def test_a_sentence_names_what_is_merged_and_the_key() -> None:
+def test_a_sentence_names_the_merged_conditions_and_the_key() -> None:
     (one,) = merged(with_grids(""))
     assert one.sentence() == (
         "grid g1 shares 1 condition with grid load, which alone measures it: 300 mm/s, 200 N, 40 degC "

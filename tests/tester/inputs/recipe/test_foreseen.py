@@ -69,14 +69,14 @@ def test_touches_leave_less_of_a_worn_wheel_than_the_misalignment() -> None:
     assert 0.8 < diameter.percent_of(diameter.largest) < found.percent_of(found.largest)
 
 
-def test_what_halves_the_diameter_is_a_check_and_the_plan_with_it_says_so_too() -> None:
+def test_a_check_halves_the_diameter_term_and_the_plan_with_it_agrees() -> None:
     found = worst(SLOW % "")
     better = halved(part(found, "diameter worn off"), ESTIMATOR, TERMS)
     assert better is not None and "wear_check: each_condition" in better.words
     assert worst(SLOW % ", wear_check: each_condition").percent < found.percent
 
 
-def test_what_halves_the_misalignment_is_both_directions() -> None:
+def test_both_directions_halve_the_misalignment_term() -> None:
     found = worst(SLOW % ", wear_check: each_condition")
     better = halved(found, ESTIMATOR, TERMS)
     assert found.largest.name == "axis misalignment"
@@ -101,14 +101,14 @@ def test_four_times_the_repeats_halve_the_repeatability() -> None:
     assert better is not None and better.words == "measure: {repeats: 20}"
 
 
-def test_a_sensitivity_that_no_pair_tells_is_unknown_and_a_file_may_say_it() -> None:
+def test_a_sensitivity_without_pairs_is_unknown_and_a_file_may_state_it() -> None:
     single = PREPARED.replace("[40 degC, 25 degC]", "40 degC")
     (one, *_), (known, *_) = of(single), of(single, [KnownSlope("1#", 40.0, 0.4, 0.2, "a file")])
     assert not one.outlook.slope.known and known.outlook.slope.source == "a file"
     assert known.percent < one.percent
 
 
-def test_pairs_of_the_plan_tell_it_before_a_file() -> None:
+def test_pairs_of_the_plan_take_precedence_over_a_file() -> None:
     (one, *_) = of(PREPARED, [KnownSlope("1#", 40.0, 0.4, 0.2, "a file")])
     assert one.outlook.slope.source.startswith("the run's own conditions")
 
@@ -119,7 +119,7 @@ def test_a_term_that_nothing_halves_has_no_proposal() -> None:
     assert halved(replace(found, whole=replace(found.whole, contributions=(other,))), ESTIMATOR, TERMS) is None
 
 
-def test_lines_and_fields_say_the_same() -> None:
+def test_lines_and_fields_agree() -> None:
     found = of(SLOW % "")
     terms: tuple[Term, ...] = TERMS
     fields, text = foreseen_fields(found, ESTIMATOR, terms), "\n".join(foreseen_lines(found, ESTIMATOR, terms))
@@ -128,7 +128,7 @@ def test_lines_and_fields_say_the_same() -> None:
     assert f"to {fields['most_percent']:.2g} % of this piece" in text
 
 
-def test_where_nothing_slides_nothing_is_said() -> None:
+def test_without_sliding_there_is_no_outlook() -> None:
     assert list(foreseen_lines([], ESTIMATOR, TERMS)) == [] and foreseen_fields([], ESTIMATOR, TERMS) == {}
 
 
@@ -180,7 +180,7 @@ def test_nothing_is_known_beyond_the_temperatures_of_the_law(at_c: float) -> Non
     assert known_slope(compound(), at_c) is None
 
 
-def test_a_file_without_such_a_law_says_nothing() -> None:
+def test_a_file_without_such_a_law_gives_no_sensitivity() -> None:
     assert known_slope(compound("name: mine\n"), 40.0) is None
 
 

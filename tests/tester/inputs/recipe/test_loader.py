@@ -34,7 +34,7 @@ def test_quantities_arrive_in_the_units_of_the_model() -> None:
     assert read.grids[0].model_dump()["load"] == [100.0, 200.0]
 
 
-def test_what_a_recipe_leaves_out_has_the_documented_defaults() -> None:
+def test_omitted_keys_have_the_documented_defaults() -> None:
     read = recipe(PREPARED)
     assert read.measure is not None
     assert read.rest is not None
@@ -127,7 +127,7 @@ def test_a_file_is_read_like_a_text(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_value_of_the_wrong_form_is_reported_where_it_stands(old: str, new: str, problem: str) -> None:
+def test_a_value_of_the_wrong_form_is_reported_with_its_position(old: str, new: str, problem: str) -> None:
     assert problem in refused(with_line(old, new))
 
 
@@ -177,7 +177,7 @@ def test_a_value_of_the_wrong_form_is_reported_where_it_stands(old: str, new: st
         ("name: load", "name: load\n    repeats: 2", "8:14", "a value without a flag needs 3 valid repeats"),
     ],
 )
-def test_what_makes_no_sense_is_reported_where_it_stands(old: str, new: str, line: str, said: str) -> None:
+def test_nonsense_is_reported_with_its_position(old: str, new: str, line: str, said: str) -> None:
     (problem,) = refused(with_line(old, new))
     assert problem.startswith(f"r.yaml:{line}: ")
     assert said in problem
@@ -333,7 +333,7 @@ def test_checking_returns_the_recipe_with_its_text() -> None:
         ),
     ],
 )
-def test_what_is_beyond_the_rig_is_reported_at_the_value_with_the_source_of_the_limit(
+def test_a_value_beyond_the_rig_is_reported_with_the_source_of_the_limit(
     old: str, new: str, problem: str
 ) -> None:
     assert problem in problems(with_line(old, new))
@@ -384,7 +384,7 @@ def test_a_compound_without_a_model_has_no_power_to_check_on_a_real_rig() -> Non
         ),
     ],
 )
-def test_what_would_trip_at_a_limit_is_refused_before_it(old: str, new: str, problem: str) -> None:
+def test_a_value_that_would_trip_at_a_limit_is_refused_before_it(old: str, new: str, problem: str) -> None:
     assert problem in problems(with_line(old, new))
 
 
@@ -432,7 +432,7 @@ def test_pre_grinding_has_the_same_least_load() -> None:
 
 
 @pytest.mark.parametrize("load", ["0 N", "-10 N"])
-def test_what_is_no_load_is_said_once(load: str) -> None:
+def test_an_invalid_load_is_reported_once(load: str) -> None:
     (problem,) = problems(with_line("[100 N, 200 N]", load))
     assert "expected more than 0 N" in problem
 
@@ -451,7 +451,7 @@ def test_a_limit_that_was_overridden_is_the_limit() -> None:
     assert "200 N is more than the rig allows (limit 150 N" in problem
 
 
-def test_a_grid_of_which_one_condition_wears_a_wheel_out_is_reported() -> None:
+def test_a_grid_with_a_condition_that_wears_a_wheel_out_is_reported() -> None:
     (problem,) = problems(PREPARED + "wheel: {replace_after: 0.2 mm}\n")
     assert problem.startswith("r.yaml:7:5: a condition of this grid wears ")
     assert "more than replace_after, 0.2 mm" in problem
@@ -588,12 +588,12 @@ def test_a_recipe_for_a_rig_of_another_kind_is_refused_for_that_alone() -> None:
     assert str(problem) == f'r.yaml:1:7: kind: {told}, rig "{rig().name}" is of kind wheel_on_belt'
 
 
-def test_a_recipe_may_say_the_kind_of_its_rig() -> None:
+def test_a_recipe_may_state_the_kind_of_its_rig() -> None:
     assert check("kind: wheel_on_belt\n" + SMALL, rig(), PART) == []
 
 
 @pytest.mark.parametrize("value", ["much", "-0.1"])
-def test_what_replaces_a_bound_of_the_budget_is_a_number(value: str) -> None:
+def test_the_replacement_of_a_bound_of_the_budget_is_a_number(value: str) -> None:
     said = f"experiment: {{uncertainty.misalignment_deg: {value}}}\n"
     with pytest.raises(InvalidSource, match=r"misalignment_deg: .* is not a number >= 0"):
         load_checked(SMALL + said, rig(), PART, "r.yaml")

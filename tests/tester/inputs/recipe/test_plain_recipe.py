@@ -27,7 +27,7 @@ def test_each_replicate_of_a_specimen_is_put_on_once_and_goes_through_every_cond
     assert rows == [1, 2, 1, 2, 3, 4, 3, 4]
 
 
-def test_the_estimate_counts_what_is_collected_and_what_lies_between() -> None:
+def test_the_estimate_counts_collecting_and_the_time_between() -> None:
     plan, rig = bench_plan(), bench_rig()
     found = PART.estimate(plan, rig)
     one, step = found.steps[1], plan.steps[1]
@@ -57,7 +57,7 @@ def test_a_plan_reads_in_words() -> None:
         ({1, 2, 3, 4}, []),
     ],
 )
-def test_what_is_left_begins_by_putting_the_specimen_on_again_under_a_new_number(
+def test_the_rest_begins_with_the_specimen_mounted_again_under_a_new_number(
     ended: set[int], left: list[object]
 ) -> None:
     mounted = tuple(Mounted(n, 1, 1, float("nan"), 0.0, ground=True) for n in (1, 2))

@@ -57,7 +57,7 @@ def test_repeats_judged_alone_are_not_made_up_for() -> None:
     assert expected(settings(repeats=2, at_most=4), 2.0) == 2.0
 
 
-def test_at_most_bounds_what_is_expected() -> None:
+def test_at_most_bounds_the_expected_repeats() -> None:
     how = settings(repeats=3, at_most=6, until_percent=0.5)
     assert expected(how, 2.0) == 6.0
     assert reached_percent(how, 2.0) > 0.5
@@ -72,7 +72,7 @@ def test_a_precision_makes_a_plan_longer() -> None:
     assert figures.rig_seconds_low < figures.rig_seconds < figures.rig_seconds_high
 
 
-def test_what_is_stored_counts() -> None:
+def test_stored_repeats_count() -> None:
     def repeats(pools: dict[str, Pool]) -> float:
         estimator = WheelEstimator(rig(), repeatability=s_percents(pools))
         plan = expand(with_precision(recipe(PREPARED), 2.0), rig(), estimator)
@@ -89,13 +89,13 @@ def lines(pools: dict[str, Pool]) -> str:
     return "\n".join(precision_lines(plan, figures, estimator, pools, foreseen(plan, figures.steps, estimator)))
 
 
-def test_the_plan_says_where_the_deviation_is_from() -> None:
+def test_the_plan_states_the_source_of_the_deviation() -> None:
     assert "1#: s = 2 % between repeats, assumed: nothing is stored" in lines({})
     stored = lines({"1#": Pool(20 * 0.015**2, 20)})
     assert "1#: s = 1.5 % between repeats, 20 degrees of freedom in stored runs" in stored
 
 
-def test_a_plan_without_a_precision_says_nothing_of_it() -> None:
+def test_a_plan_without_a_precision_does_not_mention_it() -> None:
     plan = small_plan()
     estimator = WheelEstimator(rig())
     assert list(precision_lines(plan, estimate(plan, estimator), estimator, {}, small())) == []
@@ -110,7 +110,7 @@ def small() -> list[Foreseen]:
     return foreseen(plan, estimator.walk(plan), estimator)
 
 
-def test_a_total_below_what_the_instruments_have_is_refused_by_its_largest_term() -> None:
+def test_a_total_below_that_of_the_instruments_is_refused_by_its_largest_term() -> None:
     highest = max(small(), key=floor_percent)
     largest = max(highest.instruments.contributions, key=lambda one: one.standard).name
     told = f"{floor_percent(highest):.2f} % from the instruments .* of which {largest}"
@@ -118,7 +118,7 @@ def test_a_total_below_what_the_instruments_have_is_refused_by_its_largest_term(
         until_for_total(0.9 * floor_percent(highest), small())
 
 
-def test_a_total_leaves_to_the_repeats_what_the_instruments_do_not_take() -> None:
+def test_a_total_leaves_the_remainder_to_the_repeats() -> None:
     highest = max(map(floor_percent, small()))
     until = until_for_total(highest + 1.0, small())
     assert until**2 + highest**2 == pytest.approx((highest + 1.0) ** 2)

@@ -74,7 +74,7 @@ def test_pressures_are_written_like_any_axis(written: str, area: str, loads: lis
         ("[100 kPa, 0.2 MPa]", "{from: 1 MPa, to: 1 kPa, step: 1 kPa}", "r.yaml:8:15: pressure: from, 1e+06 Pa"),
     ],
 )
-def test_what_is_wrong_with_a_pressure_is_reported_at_its_place(old: str, new: str, said: str) -> None:
+def test_a_wrong_pressure_is_reported_at_its_place(old: str, new: str, said: str) -> None:
     found = problems(TEXT.replace(old, new))
     assert any(one.startswith(said) for one in found), found
     assert not any("load is missing" in one for one in found)

@@ -42,7 +42,7 @@ def test_a_section_of_the_kind_is_read_and_any_other_refused() -> None:
         load_recipe(TEXT + "pre_grind: {duration: 1 s}\n", PART)
 
 
-def test_what_the_kind_refuses_stands_at_the_value() -> None:
+def test_a_refusal_of_the_kind_is_reported_at_the_value() -> None:
     with pytest.raises(InvalidSource, match=r"r.yaml:9:31: track_speed: 0.006 m/s heats the rubber"):
         load_recipe(TEXT.replace("1 mm/s]", "6 mm/s]"), PART, "r.yaml")
 
@@ -58,7 +58,7 @@ def test_conditions_ascend_by_the_axis_of_blocks_with_choices_among_them() -> No
     assert {one.value("interface") for one in held} == {"dry", "wet"}
 
 
-def test_a_plan_is_told_in_the_words_of_the_kind() -> None:
+def test_a_plan_uses_the_words_of_the_kind() -> None:
     plan = planned()
     told = list(lines(plan, estimate(plan, PART.estimator(None)), PART))  # type: ignore[arg-type]
     assert told[1].split("  ")[1] == "run in 50 mm" and told[-3:] == [
@@ -77,7 +77,7 @@ def test_the_json_of_a_plan_has_the_axes_and_steps_of_the_kind() -> None:
     assert found["kind"] == "track" and not any("wheel" in key for key in (*found, *second))
 
 
-def test_what_is_over_is_not_left_to_do() -> None:
+def test_finished_conditions_are_not_left_to_do() -> None:
     left = PART.remaining(planned(), Stand(frozenset({1, 2, 3})))
     assert [one.condition for one in left.conditions()] == [4, 5, 6, 7, 8]
 

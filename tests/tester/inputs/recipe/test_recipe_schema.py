@@ -33,7 +33,7 @@ def test_an_axis_of_choices_takes_one_or_a_list_and_may_be_left_out() -> None:
         ("slip_velocity: 1 m/s", 'unknown key "slip_velocity"'),
     ],
 )
-def test_what_an_axis_does_not_take_is_told_where_it_stands(line: str, told: str) -> None:
+def test_a_value_that_an_axis_refuses_is_reported_with_its_position(line: str, told: str) -> None:
     given = {"name": "name: a", "track_speed": "track_speed: 1 mm/s", "temperature": "temperature: 20 degC"}
     given[line.partition(":")[0]] = line
     text = "recipe: r\nspecimens: [{compound: a}]\ngrids:\n  - " + "\n    ".join(given.values()) + "\n"

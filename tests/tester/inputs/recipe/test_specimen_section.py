@@ -43,7 +43,7 @@ def test_origin_and_measured_values_are_stored_with_specimen_and_unit() -> None:
     }
 
 
-def test_a_specimen_of_which_nothing_is_known_adds_nothing() -> None:
+def test_an_undescribed_specimen_adds_nothing() -> None:
     assert not metadata_of(load_checked(text("{compound: SBR}"), RIG, PART).recipe)
 
 

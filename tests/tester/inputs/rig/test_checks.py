@@ -36,7 +36,7 @@ def test_a_line_over_tcp_has_no_settings_of_its_own() -> None:
 
 
 @pytest.mark.parametrize("command", [("check", "quickstart"), ("rig", "show")])
-def test_the_commands_say_it(command: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_commands_report_it(command: tuple[str, ...], capsys: pytest.CaptureFixture[str]) -> None:
     sets = [part for one in E5CC for part in ("--set", one)]
     assert invoke([*command, *sets]) == 0
     assert f"sim: warning: {SAID}\n" in capsys.readouterr().err
@@ -44,7 +44,7 @@ def test_the_commands_say_it(command: tuple[str, ...], capsys: pytest.CaptureFix
     assert "warning" not in capsys.readouterr().err
 
 
-def test_a_start_of_a_real_rig_says_it_and_is_not_refused(tmp_path: Path) -> None:
+def test_a_start_of_a_real_rig_reports_it_and_is_not_refused(tmp_path: Path) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(hardware_text(), encoding="utf-8")
     rig = load_rig(str(path), ("lines.heat.baud=9600",))
@@ -53,7 +53,7 @@ def test_a_start_of_a_real_rig_says_it_and_is_not_refused(tmp_path: Path) -> Non
     assert warnings_before(load_rig(overrides=E5CC), date(2026, 1, 1)) == []
 
 
-def test_stop_bits_are_settings_too() -> None:
+def test_stop_bits_are_also_settings() -> None:
     assert any("heat has 38400 baud, parity N, 2 stop bits; jacket" in text
                for text in other_settings(load_rig(overrides=("lines.heat.stop_bits=2",))))  # fmt: skip
     assert load_rig(overrides=("lines.heat.rts=high",)).lines["heat"].rts == "high"

@@ -90,7 +90,7 @@ def test_every_key_has_a_class(kind: type[Rig]) -> None:
     assert all(any(in_words(one)) and in_words(one)[1] for _, one in classed(kind))
 
 
-def test_a_key_without_a_class_is_one_that_only_the_file_sets() -> None:
+def test_only_the_file_sets_a_key_without_a_class() -> None:
     assert RigKey(("new",), "", ()).described
 
 
@@ -119,13 +119,13 @@ def test_a_ceiling_allows_its_hardest_value_and_nothing_looser(ceiling: Ceiling)
     assert ceiling.bound.because
 
 
-def test_a_refusal_names_value_hardest_value_reason_and_what_to_do() -> None:
+def test_a_refusal_names_value_hardest_value_reason_and_remedy() -> None:
     said = refused("sim", "limits.slip_power=500 W")
     assert "limits.slip_power: 500 W is looser than 400 W" in said
     assert "rated torque" in said and "--accept-risk REASON" in said
 
 
-def test_a_value_of_the_file_is_told_with_its_line(tmp_path: Path) -> None:
+def test_a_value_of_the_file_is_reported_with_its_line(tmp_path: Path) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(packaged_text().replace("watchdog_proof: true ", "watchdog_proof: false "), encoding="utf-8")
     line = next(i for i, text in enumerate(path.read_text().splitlines(), 1) if "watchdog_proof: false" in text)
@@ -179,7 +179,7 @@ def test_on_a_real_rig_only_the_file_describes_the_machine_even_with_a_reason(ov
         assert f"--set {override}" in said and "only the file of a real rig" in said and "held against" in said
 
 
-def test_on_a_real_rig_set_may_set_what_is_free(machine: Path) -> None:
+def test_on_a_real_rig_set_may_set_free_keys(machine: Path) -> None:
     assert load_rig(machine, ["loops.heat.outer_gain=2", "interlocks.open=2 min"]).loops.heat.outer_gain == 2.0
 
 

@@ -28,7 +28,7 @@ def test_every_assumption_of_the_code_is_in_the_list(folder: str) -> None:
         assert listed.get(path.relative_to(DOCS.parent).as_posix(), 0) == marked, path
 
 
-def test_an_assumption_is_named_by_the_number_it_stands_at() -> None:
+def test_an_assumption_is_named_by_its_number() -> None:
     marked = runpy.run_path(str(DOCS / "assumptions.py"))["marked"]
     source = 'A_S = 0.5\n"""How long [A]."""\nB = 3  # so many [A]\n'
     assert list(marked(source)) == [("A_S", "0.5", "How long [A]."), ("B", "3", "so many [A]")]

@@ -142,11 +142,11 @@ def problems(*overrides: str) -> str:
         ("devices.load_cell.simulated={fx: 1}", "are for further sensors"),
     ],
 )
-def test_a_mistake_in_the_rig_file_is_told(override: str, message: str) -> None:
+def test_a_mistake_in_the_rig_file_is_reported(override: str, message: str) -> None:
     assert message in problems(override)
 
 
-def test_a_quantity_that_the_plant_does_not_have_is_told() -> None:
+def test_a_quantity_that_the_plant_lacks_is_reported() -> None:
     rig: RigConfig = load_rig("my-rig.yaml", ["devices.torque.simulated={torque_nm: torque}"])
     with pytest.raises(InvalidSource, match='no quantity "torque"'):
         simulated_ports(rig, 0, None)

@@ -62,7 +62,7 @@ def test_a_path_to_code_is_refused() -> None:
         load_rig(overrides=["devices.load_cell.profile=acme_cells/acme_cell.py"])
 
 
-def test_a_run_keeps_on_record_what_it_loaded() -> None:
+def test_a_run_records_its_loaded_profiles() -> None:
     rig = load_rig(overrides=[OVERRIDE])
     info = run_info("x", plan_of(SMALL), load_recipe(SMALL, PART, "small.yaml"), rig)
     assert info.extensions["profiles/acme_cell"].startswith("acme_cells 1.2, acme_cells, sha256 ")

@@ -48,7 +48,7 @@ def test_packaged_rig_writes_out_the_defaults_of_the_simulated_physics(rig: RigC
     assert rig.sim == SimParameters()
 
 
-def test_packaged_observer_believes_what_the_simulated_wheel_does(rig: RigConfig) -> None:
+def test_packaged_observer_matches_the_simulated_wheel(rig: RigConfig) -> None:
     assert (rig.observer.wheel, rig.observer.thermal) == (rig.sim.wheel, rig.sim.thermal)
 
 
@@ -113,7 +113,7 @@ def test_set_of_a_wrong_unit_names_those_accepted() -> None:
     assert "--set limits.load=3 m/s" in problem and "units accepted: N, kN" in problem
 
 
-def test_set_of_a_value_that_a_section_refuses_is_told_as_the_override_s() -> None:
+def test_set_of_a_value_that_a_section_refuses_is_reported_as_the_override_s() -> None:
     (problem,) = problems("sim.thermal.cells=1")
     assert problem.startswith("--set sim.thermal.cells=1:1:1: ")
 
@@ -124,7 +124,7 @@ def test_set_that_is_no_key_and_value_is_refused(override: str) -> None:
     assert problem.startswith("--set ")
 
 
-def test_every_bad_override_is_told() -> None:
+def test_every_bad_override_is_reported() -> None:
     assert len(problems("sim.nosie=0", "limits.load=1 m", "scan.idle=0")) == 3
 
 
@@ -167,7 +167,7 @@ def test_every_bad_override_is_told() -> None:
         ("axes.press.screw.lead=0 mm", "lead must be above 0 mm"),
     ],
 )
-def test_what_does_not_fit_together_is_refused(override: str, place: str) -> None:
+def test_inconsistent_values_are_refused(override: str, place: str) -> None:
     assert any(place in problem for problem in problems(override))
 
 
@@ -199,7 +199,7 @@ def test_press_gets_the_torque_for_the_limit_of_the_load_and_no_more(load: str, 
     assert load_rig("sim", [f"limits.load={load}"]).axes.press.max_torque_per_mille == per_mille
 
 
-def test_press_gets_less_torque_where_the_file_says_so() -> None:
+def test_press_gets_less_torque_where_the_file_limits_it() -> None:
     rig = load_rig("sim", ["limits.load=300 N", "axes.press.max_torque_per_mille=500"])
     assert rig.axes.press.max_torque_per_mille == 166
     assert rig.axes.wheel.max_torque_per_mille == 3000
@@ -247,9 +247,9 @@ def test_inputs_may_not_go_stale_by_a_single_lost_frame() -> None:
 
 
 @pytest.mark.parametrize("value", ["0 N", "51 N"])
-def test_what_an_unloaded_cell_may_show_is_bounded(value: str) -> None:
+def test_the_reading_of_an_unloaded_cell_is_bounded(value: str) -> None:
     assert problems(f"arming.unloaded={value}")
 
 
-def test_the_file_for_a_real_machine_states_what_an_unloaded_cell_may_show() -> None:
+def test_the_file_for_a_real_machine_states_the_bound_of_an_unloaded_cell() -> None:
     assert "  unloaded: 20 N" in hardware_text() and "  stale_inputs: 250 ms" in hardware_text()

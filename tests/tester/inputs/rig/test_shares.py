@@ -10,7 +10,7 @@ from tester.kinds import load_rig
 
 
 @pytest.mark.parametrize("name", ["sim", "grosch", "pin-on-disc"])
-def test_every_packaged_rig_states_what_fails_together(name: str) -> None:
+def test_every_packaged_rig_states_its_shared_failures(name: str) -> None:
     rig = load_rig(name)
     assert {share.shared for share in rig.shares.values()} >= {"supply", "ground", "adapter", "temperature"}
 

@@ -52,7 +52,7 @@ def test_the_packaged_rig_lacks_nothing() -> None:
     assert packaged_keys("sim") == ()
 
 
-def test_upgrade_writes_the_missing_keys_and_says_which(old: Path) -> None:
+def test_upgrade_writes_the_missing_keys_and_lists_them(old: Path) -> None:
     before = load_rig(old)
     assert upgrade(old) == KEYS
     assert packaged_keys(old) == () and load_rig(old) == before
@@ -105,7 +105,7 @@ def test_upgrade_fills_a_section_that_is_empty_or_missing(tmp_path: Path, text: 
 
 
 @pytest.mark.parametrize("text", ["interlocks: {jump: 4 K}\n", "interlocks: 3\n", "- a\n"])
-def test_upgrade_refuses_what_no_line_can_be_added_to_and_leaves_it(tmp_path: Path, text: str) -> None:
+def test_upgrade_refuses_a_file_that_takes_no_line_and_leaves_it(tmp_path: Path, text: str) -> None:
     path = tmp_path / "rig.yaml"
     path.write_text(text, encoding="utf-8")
     with pytest.raises(InvalidSource):

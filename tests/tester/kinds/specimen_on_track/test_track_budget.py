@@ -39,7 +39,7 @@ def test_every_term_of_the_machine_is_looked_at_here() -> None:
     assert {one.name for one in TERMS} == EXPECTED.keys()
 
 
-def test_what_the_rig_is_off_by_is_common_to_its_conditions() -> None:
+def test_an_error_of_the_rig_is_common_to_its_conditions() -> None:
     assert {one.name for one in contributions_of(TERMS, AT) if one.common != "rig"} == OWN
 
 
@@ -51,13 +51,13 @@ def test_a_coefficient_that_falls_with_temperature_is_off_the_other_way() -> Non
     assert falls == pytest.approx(-MU * 0.03) and rises == -falls
 
 
-def test_the_instruments_have_all_but_the_specimen_and_what_is_not_known_of_the_sensitivity() -> None:
+def test_the_instruments_have_all_terms_but_specimen_and_sensitivity() -> None:
     found = instruments_budget(MU, LOAD_N, TRACK_M_S, Slope(PER_KELVIN, 0.004, "made up"))
     chain = sum(u * u for name, u in EXPECTED.items() if name != "specimen to specimen")
     assert found.standard == pytest.approx(sqrt(chain + (MU * 0.004 * EVEN) ** 2))
 
 
-def test_an_unknown_sensitivity_is_in_what_is_expected() -> None:
+def test_an_unknown_sensitivity_is_in_the_expected_uncertainty() -> None:
     found = {one.name: one.standard for one in instruments_budget(MU, LOAD_N, TRACK_M_S, UNKNOWN).contributions}
     assert found["temperature sensitivity"] == pytest.approx(MU * 0.026 * EVEN)
     assert found["thermometer"] == 0.0

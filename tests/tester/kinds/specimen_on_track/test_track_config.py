@@ -42,7 +42,7 @@ def test_a_packaged_file_is_the_wiring_and_the_plant_that_are_simulated(name: st
         ("sim.enclosed=false", "whether there is a chamber"),
     ],
 )
-def test_what_does_not_fit_together_is_refused(override: str, said: str) -> None:
+def test_inconsistent_values_are_refused(override: str, said: str) -> None:
     with pytest.raises(InvalidSource, match=said):
         load_rig("grosch", [override], accept_risk="what it says is tried")
 

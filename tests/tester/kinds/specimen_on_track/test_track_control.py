@@ -69,7 +69,7 @@ def unknown(name: str, value: object = nan) -> Callable[[TrackInputs], None]:
         ("device refused", unknown("device_fault", "load cell refuses")),
     ],
 )
-def test_a_row_holds_where_what_it_looks_at_is_not_known(
+def test_a_row_holds_where_its_input_is_unknown(
     sliding: TrackBench, row: str, spoil: Callable[[TrackInputs], None]
 ) -> None:
     view: TrackInputs = sliding.run.engine.control.view
@@ -84,7 +84,7 @@ def test_the_arm_between_its_ends_holds_a_row_while_the_track_moves(sliding: Tra
     assert "arm not in place" in held(sliding)
 
 
-def test_a_track_that_goes_on_though_its_drive_is_to_switch_off_holds_a_row(sliding: TrackBench) -> None:
+def test_a_track_that_keeps_moving_though_its_drive_is_to_switch_off_holds_a_row(sliding: TrackBench) -> None:
     view: TrackInputs = sliding.run.engine.control.view
     view.demand.enabled = False
     assert "not switched off" in held(sliding)

@@ -44,7 +44,7 @@ def problems(tmp_path: Path, text: str, *overrides: str) -> list[str]:
     return []
 
 
-def test_a_run_measures_what_the_law_says() -> None:
+def test_a_run_measures_the_values_of_the_law() -> None:
     bench = TrackBench("grosch", GROSCH, ("sim.scatter=0", "sim.law=persson", "sim.surface=S0")).to_the_end()
     assert bench.run.outcome is Outcome.DONE and not bench.kept.trips
     law = make("persson", "SBR", setting=LawSetting(Library.beside(), "S0", 100.0))
@@ -123,14 +123,14 @@ def test_a_recipe_of_known_materials_is_valid(tmp_path: Path) -> None:
         (("SBR", "XY"), "wlf_bell", "4: compound: sim.law wlf_bell: no rubber 'XY' among sim.rubbers"),
     ],
 )
-def test_what_the_law_cannot_be_made_of_is_told_at_its_line(
+def test_materials_unfit_for_the_law_are_reported_at_their_line(
     tmp_path: Path, change: tuple[str, str], law: str, said: str
 ) -> None:
     found = problems(tmp_path, ON.replace(*change), f"sim.law={law}")
     assert any(said in one for one in found), found
 
 
-def test_moduli_that_end_too_early_for_a_track_are_told(tmp_path: Path) -> None:
+def test_moduli_that_end_too_early_for_a_track_are_reported(tmp_path: Path) -> None:
     (tmp_path / "compounds").mkdir()
     rows = "".join(f"      - [{t}, 1, 1e8, 1e7]\n" for t in range(0, 41, 10))
     text = "name: short\nsource: made up\ndecade_k: 8\nmoduli:\n"

@@ -41,7 +41,7 @@ def test_a_linear_track_is_gone_there_and_back_and_a_disc_one_way(done: TrackBen
     assert {result.bursts for _, result in done.kept.results} == {2 if done.config.linear else 1}
 
 
-def test_the_track_stands_whenever_the_arm_moves_or_the_cell_is_not_tared() -> None:
+def test_the_track_is_at_rest_whenever_the_arm_moves_or_the_cell_is_not_tared() -> None:
     bench = TrackBench("grosch")
     while not bench.run.finished:
         bench.tick()

@@ -34,11 +34,11 @@ def problems(text: str, rig: str) -> list[str]:
         (("distance: 0.4 mm", "window: 30 rev"), "grosch", "this machine slides for a way (expected distance)"),
     ],
 )
-def test_what_the_rig_cannot_do_is_refused(change: tuple[str, str], rig: str, said: str) -> None:
+def test_conditions_beyond_the_rig_are_refused(change: tuple[str, str], rig: str, said: str) -> None:
     assert any(said in one for one in problems(GROSCH.replace(*change), rig))
 
 
-def test_a_check_says_where_friction_heat_would_matter() -> None:
+def test_a_check_reports_where_friction_heat_would_matter() -> None:
     text = GROSCH.replace("load: 20 N", "load: 40 N").replace("3 mm/s", "10 mm/s")
     text = text.replace("repeats: 1", "repeats: 1, temperature_band: 0.1 K").replace("within: 1 K", "within: 0.1 K")
     (said,) = problems(text, "grosch")
@@ -73,7 +73,7 @@ def test_friction_that_counts_as_a_lost_contact_is_refused_with_the_key_to_state
     assert "state least_friction for a wet or powdered track" in said
 
 
-def test_low_friction_that_a_rig_cannot_witness_is_refused_with_what_it_lacks() -> None:
+def test_low_friction_that_a_rig_cannot_witness_is_refused_with_the_missing_sensor() -> None:
     of_law, stated = on_disc(WET, *FILM, high=False)
     assert stated == (
         "least_friction: 0.02 is too little to show contact (interlocks.lost_share 5 %), and rig"
@@ -105,7 +105,7 @@ def test_a_law_below_the_stated_friction_is_refused() -> None:
     assert "(interlocks.deaf, or half of least_friction)" in said
 
 
-def test_a_dry_track_is_not_allowed_low_friction_by_what_is_stated() -> None:
+def test_a_statement_allows_no_low_friction_on_a_dry_track() -> None:
     text = DISC.replace("[dry, wet]", "dry").replace("5 K, soak", "5 K, least_friction: 0.02, soak")
     (said,) = on_disc(text, "sim.contact.wet=0.6", "sim.rubbers={SBR: {mu_0: 0.02, mu_max: 0.02}}")
     assert "at SBR, 10 N" in said and "below 5 %" in said
@@ -115,19 +115,19 @@ def test_friction_well_above_a_lost_contact_is_no_problem() -> None:
     assert on_disc(DISC) == []
 
 
-def test_on_a_disc_the_plan_says_how_much_friction_warms() -> None:
+def test_on_a_disc_the_plan_states_the_warming_by_friction() -> None:
     text = DISC.replace("0.2 m/s", "1 m/s").replace("5 K", "2 K").replace("within: 3 K", "within: 2 K")
     made, rig = plan(text), load_rig("pin-on-disc")
     assert problems(text, "pin-on-disc") == []
     assert any("friction warms it by 10 K" in line for line in lines(made, PART.estimate(made, rig), PART))
 
 
-def test_a_person_is_asked_only_for_what_changes() -> None:
+def test_a_person_is_asked_only_for_changes() -> None:
     asked = [step.text for step in plan().steps if isinstance(step, Prepare)]
     assert asked == ["hang 10 N of weights on the arm and make the track clean and dry", "make the track wet"]
 
 
-def test_what_is_left_begins_with_what_has_to_be_done_again() -> None:
+def test_the_rest_begins_with_the_steps_to_be_repeated() -> None:
     left = PART.remaining(plan(), Stand(frozenset({1}), frozenset({1}), (Mounted(1, 1, 1, float("nan"), 0.2, False),)))
     install, temper, prepare, condition = left.steps
     assert isinstance(install, MountSpecimen) and install.again and install.sliding_m == 0.2
@@ -172,7 +172,7 @@ def test_a_new_surface_is_dry() -> None:
     ]  # fmt: skip
 
 
-def test_what_is_left_begins_on_its_surface() -> None:
+def test_the_rest_begins_on_its_surface() -> None:
     text = DISC.replace("grids:\n  - {name: one, ", SURFACES)
     ended = frozenset({1, 2, 3})
     left = PART.remaining(plan(text), Stand(ended, ended, (Mounted(1, 1, 1, float("nan"), 0.2, False),)))
@@ -180,7 +180,7 @@ def test_what_is_left_begins_on_its_surface() -> None:
     assert isinstance(left.steps[1], Cover) and left.steps[1].surface == "silicon carbide"
 
 
-def test_what_is_left_opens_the_chamber_first_and_prepares_what_was_covered() -> None:
+def test_the_rest_opens_the_chamber_first_and_prepares_the_covered_surface() -> None:
     text = GROSCH.replace("grids:\n  - {name: one, ", SURFACES).replace("23 degC", "[0 degC, 20 degC]")
     text = text.replace("load: 20 N", "interface: [dry, wet], load: 20 N")
     whole = plan(text, "grosch")

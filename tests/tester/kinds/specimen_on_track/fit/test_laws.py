@@ -120,7 +120,7 @@ def test_the_fit_recovers_the_true_parameters(law: Law, truth: tuple[float, ...]
     assert fitted(law, points(mu, speeds), 9).parameters == pytest.approx(truth, rel=1e-5)
 
 
-def test_the_intervals_of_greta_hold_what_was_put_in() -> None:
+def test_the_intervals_of_greta_contain_the_true_values() -> None:
     truth = (SHEAR.strength_pa, SHEAR.speed_m_s, SHEAR.exponent)
     law, mu, held = PART.bound(GRETA, GROUP, "", {}), Greta(rubber(), road()).mu, np.zeros(3, dtype=int)
     for seed in range(20):
@@ -140,7 +140,7 @@ def test_the_fitted_persson_is_the_simulators_up_to_any_wave_number() -> None:
         assert law.value(np.array([q1]), x) == pytest.approx(expected, rel=5e-3)
 
 
-def test_the_interval_of_q1_holds_what_was_put_in() -> None:
+def test_the_interval_of_q1_contains_the_true_value() -> None:
     mu = PerssonByLoad(PerssonLaw(ZENER, 0.5, SelfAffine(2.6023e-19, 2e4, 1e5, 0.8)), 100.0).mu
     law, exact = PART.bound(PERSSON, SMOOTH, "", {}), points(mu, temperatures=(10.0, 30.0))
     held = 0
@@ -152,7 +152,7 @@ def test_the_interval_of_q1_holds_what_was_put_in() -> None:
     assert held >= 17
 
 
-def test_without_different_speeds_the_shear_of_a_contact_cannot_be_told() -> None:
+def test_without_different_speeds_the_shear_of_a_contact_is_unknown() -> None:
     own = points(Greta(rubber(), road()).mu, (1.0,), (5.0, 15.0, 25.0, 35.0, 45.0))
     with pytest.raises(FitError, match=r"one speed only \(1000 mm/s\), and v_c, n need at least 3"):
         fitted(GRETA, own)
@@ -203,7 +203,7 @@ def test_a_bell_warns_of_conditions_beyond_its_shift() -> None:
         ("SBR, dry on road", "", {"height": 1.0}, "greta has no height"),
     ],
 )
-def test_what_the_law_of_a_group_lacks_is_said(
+def test_missing_inputs_of_a_groups_law_are_reported(
     group: str, surface: str, figures: dict[str, float], message: str
 ) -> None:
     with pytest.raises(FitError, match=message):
@@ -220,7 +220,7 @@ def test_the_area_that_is_given_is_that_of_the_law() -> None:
 
 
 @pytest.mark.parametrize("group", [TrackGroup("SBR", "wet", ""), TrackGroup("a, b", "dry", "c on d, e")])
-def test_a_group_is_read_as_it_is_told(group: TrackGroup) -> None:
+def test_a_group_is_read_from_its_option(group: TrackGroup) -> None:
     assert group_of(group.text) == group
 
 

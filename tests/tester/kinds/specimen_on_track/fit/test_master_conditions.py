@@ -12,7 +12,7 @@ from tester.kinds.specimen_on_track.fit.run_data import TEMPERATURE, run_points
 from tests.tester.kinds.specimen_on_track.fit.made import WARM_K, law, made_track_run
 
 
-def test_points_have_measured_speed_and_temperature_and_what_they_share(tmp_path: Path) -> None:
+def test_points_have_measured_speed_and_temperature_and_shared_errors(tmp_path: Path) -> None:
     folder = made_track_run(tmp_path / "one", (0.0,), (1e-5, 1e-3), interfaces=("talc",), scatter=0.0)
     found = MASTERS.run(folder)
     last = found.points[-1]

@@ -25,7 +25,7 @@ def test_measured_and_nominal_conditions_stand_side_by_side(tmp_path: Path) -> N
     assert len(found.points) == 4 and found.left_out == ()
 
 
-def test_repeats_tell_the_scatter_of_their_mean(tmp_path: Path) -> None:
+def test_repeats_give_the_scatter_of_their_mean(tmp_path: Path) -> None:
     several = run_points(made_track_run(tmp_path / "three", (20.0,), (1e-4, 1e-3), repeats=3, scatter=0.02))
     assert all(0.0 < one.type_a < 0.05 and one.df == 4.0 for one in several.points)
     assert several.points[0].source.repeats == "repeats of the run"
@@ -53,7 +53,7 @@ def test_a_condition_has_its_zero_and_drift_of_its_own_and_no_repeats_among_them
         assert one.own == pytest.approx(hypot(0.05 / sqrt(3.0) / 20.0 / one.value, drift), rel=1e-6)
 
 
-def test_what_friction_warms_beyond_its_band_is_left_out_and_the_rest_knows_its_own_heat(tmp_path: Path) -> None:
+def test_conditions_warmed_by_friction_beyond_their_band_are_left_out(tmp_path: Path) -> None:
     found = run_points(made_track_run(tmp_path / "one", (0.0, 20.0), (1e-4, 1e-2), scatter=0.0, band_k=0.21))
     assert {reason for _, reason in found.left_out} == {BEYOND_BAND}
     assert len(found.points) + len(found.left_out) == 4 and found.left_out
@@ -83,13 +83,13 @@ def test_a_recipe_replaces_the_thermometers_bound(tmp_path: Path) -> None:
     assert thermometer.standard == pytest.approx(0.2 / sqrt(3.0))
 
 
-def test_what_nobody_should_rely_on_is_left_out_with_the_reason(tmp_path: Path) -> None:
+def test_unreliable_conditions_are_left_out_with_the_reason(tmp_path: Path) -> None:
     found = run_points(made_track_run(tmp_path / "one", (20.0,), (1e-5, 1e-4, 1e-3), carried=[1], failed=[2]))
     assert [one.nominal[SPEED] for one in found.points] == [1e-3]
     assert [reason for _, reason in found.left_out] == ["carry-over", "not reached"]
     assert found.left_out[0][0] == "one/1 (SBR, 20 N, 20 degC, 0.01 mm/s)"
 
 
-def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(StoreError):
         run_points(tmp_path)

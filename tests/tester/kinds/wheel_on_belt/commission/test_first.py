@@ -49,18 +49,18 @@ def test_a_coefficient_near_its_compounds_model_passes_without_a_word() -> None:
     assert not told
 
 
-def test_one_a_third_off_is_told_of() -> None:
+def test_a_coefficient_a_third_off_is_reported() -> None:
     _, told, _ = measured(0.70, "1#")
     assert "take care" in told[0]
 
 
 @pytest.mark.parametrize(("mu", "compound"), [(0.72, "2#"), (0.20, "1#"), (1.2, "3#")])
-def test_one_that_cannot_be_is_refused(mu: float, compound: str) -> None:
+def test_an_impossible_coefficient_is_refused(mu: float, compound: str) -> None:
     with pytest.raises(StepRefused, match=f"of {compound} is .* off what its model gives"):
         measured(mu, compound)
 
 
-def test_another_name_is_held_against_what_rubber_has() -> None:
+def test_an_unknown_compound_is_compared_with_rubber_in_general() -> None:
     notes, told, ran = measured(0.9, 'tread "A", 60 phr')
     assert notes.values["expected_mu"] is None and "is unknown" in told[0]
     assert yaml.safe_load(ran[0])["specimens"][0]["compound"] == 'tread "A", 60 phr'

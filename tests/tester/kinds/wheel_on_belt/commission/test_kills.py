@@ -169,12 +169,12 @@ def goes_on(out: Path, kill: Kill, one: Whole) -> None:
 
 
 @pytest.mark.parametrize("number", range(len(QUICK)), ids=QUICK)
-def test_killed_in_a_step_it_goes_on_with_the_same_result(tmp_path: Path, unkilled: Whole, number: int) -> None:
+def test_killed_in_a_step_it_resumes_with_the_same_result(tmp_path: Path, unkilled: Whole, number: int) -> None:
     kills = unkilled.moments(NAMES[number])
     goes_on(tmp_path, kills[-1 - number % 3] if number % 2 else kills[number % len(kills)], unkilled)
 
 
-def test_after_a_kill_nothing_is_even_connected_before_a_person_says_so(tmp_path: Path, unkilled: Whole) -> None:
+def test_after_a_kill_nothing_is_even_connected_before_a_person_agrees(tmp_path: Path, unkilled: Whole) -> None:
     unkilled.before("rolling", tmp_path)
     assert killed(tmp_path, Kill("rolling", at_s=20.0))
     person = Mortal("touch")
@@ -187,7 +187,7 @@ def test_after_a_kill_nothing_is_even_connected_before_a_person_says_so(tmp_path
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("number", range(len(NAMES)), ids=NAMES)
-def test_killed_at_every_question_and_in_motion_it_goes_on(
+def test_killed_at_every_question_and_in_motion_it_resumes(
     tmp_path: Path, tmp_path_factory: pytest.TempPathFactory, number: int
 ) -> None:
     one = _entire(tmp_path_factory)

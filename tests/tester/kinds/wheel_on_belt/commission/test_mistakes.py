@@ -32,5 +32,5 @@ def test_every_mistake_is_named_with_other_seeds(seed: int) -> None:
 
 @pytest.mark.campaign
 @pytest.mark.parametrize("seed", range(10))
-def test_nothing_is_said_of_a_clean_rig(seed: int) -> None:
+def test_a_clean_rig_has_no_findings(seed: int) -> None:
     assert clean(seed) == []

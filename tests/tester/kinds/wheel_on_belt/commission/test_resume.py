@@ -51,7 +51,7 @@ def test_killed_at_every_question_it_ends_with_the_same_results(tmp_path: Path) 
         assert results(again) == results(whole), at
 
 
-def test_nothing_moves_after_a_restart_before_a_person_says_so(tmp_path: Path) -> None:
+def test_nothing_moves_after_a_restart_before_a_person_agrees(tmp_path: Path) -> None:
     path = tmp_path / "r.jsonl"
     with pytest.raises(Killed):
         Bench(path, steps=STEPS, person=Mortal(8)).run()

@@ -43,7 +43,7 @@ def test_the_uncertainty_holds() -> None:
     assert sum(one <= 3.0 for one in off) >= 0.95 * len(off)
 
 
-def test_what_has_not_begun_to_settle_has_no_end() -> None:
+def test_an_unsettled_course_has_no_end() -> None:
     fit = SettlingFit()
     for number in range(60):
         fit.add(20.0 + 0.5 * number)

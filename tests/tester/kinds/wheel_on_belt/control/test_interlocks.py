@@ -259,7 +259,7 @@ def test_every_row_of_the_table_has_a_test_here() -> None:
     assert {row.name for row in TABLE.rows} == set(CAUSES) | OWN_TESTS
 
 
-def test_names_are_unique_and_every_row_says_all_it_has_to() -> None:
+def test_names_are_unique_and_every_row_is_complete() -> None:
     assert len({row.name for row in TABLE.rows}) == len(TABLE.rows)
     assert all(row.cause and row.watch.level and row.reset for row in TABLE.rows)
 
@@ -445,7 +445,7 @@ def test_a_scan_160_ms_late_trips_at_once(bench: Bench) -> None:
     assert bench.state.trip is not None and bench.state.trip.name == "scan late"
 
 
-def test_a_scan_60_ms_late_is_a_warning_and_each_is_said_once(bench: Bench) -> None:
+def test_a_scan_60_ms_late_is_a_warning_and_each_is_reported_once(bench: Bench) -> None:
     late_scan(bench, 0.06)
     bench.scans(0.5)
     late_scan(bench, 0.06)

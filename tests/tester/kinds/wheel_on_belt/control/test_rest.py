@@ -110,7 +110,7 @@ def test_a_stop_that_wants_no_cool_down_ends_it(bench: Bench) -> None:
 
 @pytest.mark.parametrize("mode", [Mode.IDLE, Mode.LATCHED])
 @pytest.mark.parametrize("signal", ["wheel_speed_m_s", "belt_speed_m_s", "press_mm"])
-def test_what_moves_at_rest_under_power_loses_it_and_latches(bench: Bench, mode: Mode, signal: str) -> None:
+def test_an_axis_that_moves_at_rest_under_power_loses_it_and_latches(bench: Bench, mode: Mode, signal: str) -> None:
     rest(bench, mode)
     bench.readings.drives_disabled = False
     setattr(bench.readings, signal, getattr(bench.readings, signal) + 0.5)
@@ -193,7 +193,7 @@ def test_a_drive_that_takes_power_by_itself_in_a_run_at_rest_loses_it(bench: Ben
 
 
 @pytest.mark.parametrize("stamp", ["wheel_at_s", "belt_at_s", "press_at_s"])
-def test_a_drive_of_which_nothing_is_known_in_a_run_at_rest_trips(bench: Bench, stamp: str) -> None:
+def test_an_unknown_drive_in_a_run_at_rest_trips(bench: Bench, stamp: str) -> None:
     rest_in_run(bench)
     bench.stale.add(stamp)
     bench.scans(1.0, 0.1)
@@ -201,7 +201,7 @@ def test_a_drive_of_which_nothing_is_known_in_a_run_at_rest_trips(bench: Bench, 
 
 
 @pytest.mark.parametrize(("signal", "value"), [("wheel_speed_m_s", 0.3), ("belt_speed_m_s", -0.1), ("press_mm", 0.5)])
-def test_what_moves_while_the_drives_come_up_trips(bench: Bench, signal: str, value: float) -> None:
+def test_motion_while_the_drives_come_up_trips(bench: Bench, signal: str, value: float) -> None:
     rest_in_run(bench)
     bench.demand.enabled = True
     bench.readings.drives_disabled = False

@@ -45,7 +45,7 @@ def test_no_wanted_temperature_is_no_change(bench: Bench) -> None:
         assert len(asked) == times
 
 
-def test_inputs_that_do_not_say_what_they_hold_have_them_evaluated_in_every_scan(bench: Bench) -> None:
+def test_inputs_that_do_not_declare_their_fields_are_evaluated_in_every_scan(bench: Bench) -> None:
     view, table = bench.control.view, RigTable(TABLE, bench.control.view.parameters)
     asked: list[object] = []
     table.after_change.any_holds = lambda v: asked.append(v) is not None

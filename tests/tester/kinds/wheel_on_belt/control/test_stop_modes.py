@@ -61,7 +61,7 @@ def test_drives_that_do_not_stop_are_stopped_fast_and_then_lose_their_power(benc
 
 
 @pytest.mark.parametrize(("belt_m_s", "after_s"), [(0.8, 2.0), (1.1, 2.19), (1.3, 2.31)])
-def test_a_drive_that_goes_on_turning_loses_its_power_the_later_the_faster_it_turns(
+def test_a_drive_that_keeps_turning_loses_its_power_the_later_the_faster_it_turns(
     bench: Bench, belt_m_s: float, after_s: float
 ) -> None:
     r = bench.readings
@@ -92,7 +92,7 @@ def test_heat_that_does_not_go_off_leaves_the_jackets_lease_to_run_out(bench: Be
     assert any(text.startswith("heat not off") for text in bench.texts("trip") + bench.texts("alarm"))
 
 
-def test_a_contactor_that_stays_closed_is_said_and_latched(bench: Bench) -> None:
+def test_a_contactor_that_stays_closed_is_reported_and_latched(bench: Bench) -> None:
     stop(bench)
     lift(bench)
     stand(bench)
@@ -135,7 +135,7 @@ def test_speeds_that_are_old_do_not_end_a_stop(bench: Bench) -> None:
     assert bench.state.mode is Mode.FAST_STOP
 
 
-def test_a_press_that_stands_clear_counts_as_unloaded_whatever_a_dead_cell_shows(bench: Bench) -> None:
+def test_a_retracted_press_counts_as_unloaded_whatever_a_dead_cell_shows(bench: Bench) -> None:
     bench.state.load.contact_mm = 10.0
     stop(bench)
     cool(bench)
@@ -146,7 +146,7 @@ def test_a_press_that_stands_clear_counts_as_unloaded_whatever_a_dead_cell_shows
     assert bench.state.mode in (Mode.LATCHED, Mode.IDLE)
 
 
-def test_a_press_that_stands_clear_does_not_count_as_unloaded_against_a_cell_that_lives(bench: Bench) -> None:
+def test_a_retracted_press_does_not_count_as_unloaded_against_a_live_cell(bench: Bench) -> None:
     bench.state.load.contact_mm = 13.0
     stop(bench)
     cool(bench)
@@ -171,7 +171,7 @@ def test_a_stop_does_not_end_before_the_heat_is_seen_off(bench: Bench) -> None:
     assert bench.state.mode is Mode.IDLE
 
 
-def test_heat_that_stays_on_is_told_before_the_stop_ends_and_stays_silent_until_acknowledged(bench: Bench) -> None:
+def test_heat_that_stays_on_is_reported_before_the_stop_ends_and_stays_silent_until_acknowledged(bench: Bench) -> None:
     stop(bench)
     lift(bench)
     stand(bench)
@@ -297,7 +297,7 @@ def test_a_stop_that_cannot_end_takes_the_power_off_and_latches(bench: Bench) ->
     assert bench.scans(0.1).power_off and bench.state.mode is Mode.LATCHED
 
 
-def test_a_fast_stop_that_cannot_end_says_so_and_latches(bench: Bench) -> None:
+def test_a_fast_stop_that_cannot_end_reports_it_and_latches(bench: Bench) -> None:
     bench.control.request_stop(bench.readings.now_s, "test", fast=True)
     stand(bench)
     lift(bench)

@@ -36,7 +36,7 @@ def test_a_change_of_force_that_the_press_explains_is_no_step(bench: Bench) -> N
     ("witness", "off_n", "row"),
     [("least", 19.0, ""), ("least", 21.0, "press torque"), ("most", -19.0, ""), ("most", -21.0, "press torque")],
 )
-def test_a_force_outside_what_the_torque_allows(bench: Bench, witness: str, off_n: float, row: str) -> None:
+def test_a_force_outside_the_range_of_the_torque(bench: Bench, witness: str, off_n: float, row: str) -> None:
     """Set the torque whose least, or greatest, possible force is this far from the reading."""
     bench.screws = False
     band, force_n = bench.control.view.press_band, bench.readings.force_z_n + off_n + 40.0
@@ -110,7 +110,7 @@ def test_a_belt_drive_that_takes_another_torque_than_friction(
 
 
 @pytest.mark.parametrize("angle_deg", [30.0, -30.0])
-def test_a_wheel_at_an_angle_asks_of_the_belt_what_both_forces_have_along_it(bench: Bench, angle_deg: float) -> None:
+def test_a_wheel_at_an_angle_loads_the_belt_with_both_forces_along_it(bench: Bench, angle_deg: float) -> None:
     """At 30 deg a slip of (0.37, 0.25) m/s: 146 N of friction, 64 N of it along the belt."""
     r, angle = bench.readings, math.radians(angle_deg)
     r.positions["sideslip"] = bench.demand.positions["sideslip"] = angle_deg
@@ -125,7 +125,7 @@ def test_a_wheel_at_an_angle_asks_of_the_belt_what_both_forces_have_along_it(ben
 
 @pytest.mark.parametrize("slip", [0.3, -0.3])
 @pytest.mark.parametrize(("pull_nm", "after_s"), [(9.9, 0.05), (10.1, 0.01)])
-def test_a_belt_drive_that_does_what_friction_does_trips_at_once(
+def test_a_belt_drive_that_acts_like_friction_trips_at_once(
     bench: Bench, slip: float, pull_nm: float, after_s: float
 ) -> None:
     """Below belt_pull it is as soon as "belt torque" is."""
@@ -149,7 +149,7 @@ def test_a_belt_drive_pulls_at_will_while_nothing_slides_for_sure(bench: Bench) 
 
 
 @pytest.mark.parametrize(("scan_s", "row"), [(0.05, "belt caught"), (0.01, "belt torque")])
-def test_rolling_the_load_cell_says_at_once_what_the_belt_drive_should_do_only_while_scans_are_slow(
+def test_rolling_the_load_cell_gives_the_belt_torque_at_once_only_while_scans_are_slow(
     bench: Bench, scan_s: float, row: str
 ) -> None:
     """While a command changes, Fx and torque, read at two times, may have opposite signs."""

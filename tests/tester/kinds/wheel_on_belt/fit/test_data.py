@@ -38,7 +38,7 @@ def test_fits_get_the_readable_rows_each_once() -> None:
         assert len({(point.group, point.nominal) for point in one.points}) == len(one.points)
 
 
-def test_what_is_left_out_says_why() -> None:
+def test_left_out_rows_have_a_reason() -> None:
     reasons = Counter(reason for name in APPENDICES for _, reason in appendix(name).left_out)
     assert reasons == {
         "printed twice": 12,

@@ -22,7 +22,7 @@ X = np.array(DESIGN)
 
 
 @pytest.mark.parametrize("compound", COMPOUNDS)
-def test_the_normalised_form_of_eq_6_gives_what_table_3_gives(compound: str) -> None:
+def test_the_normalised_form_of_eq_6_agrees_with_table_3(compound: str) -> None:
     given = COMPOUNDS[compound]
     assert PAPER.value(np.array(joint_of(given)), X) == pytest.approx(evaluate(given, *X.T), rel=SAME)
     assert evaluate(table_3_of(joint_of(given)), *X.T) == pytest.approx(evaluate(given, *X.T), rel=SAME)

@@ -46,7 +46,7 @@ def test_a_line_of_the_table_is_as_calculated_elsewhere(way: str, table: Publish
     assert (100.0 * found.median, 100.0 * found.largest) == pytest.approx((middle, largest), abs=0.051)
 
 
-def test_what_is_asked_is_met(table: PublishedTable) -> None:
+def test_the_requirements_are_met(table: PublishedTable) -> None:
     assert [line.way for line in table.lines if line.asked] == ["Eqs 7 to 9 with Table 3", "v2, fitted to appendix A"]
     assert table.missed == []
 
@@ -97,7 +97,7 @@ def test_inferred_rows_alone_give_table_3_of_their_compound_back(compound: str) 
     assert abs(b2[Reading.WITHOUT] / printed - 1.0) > 0.1 and abs(b2[Reading.PRINTED] / printed - 1.0) > 0.1
 
 
-def test_the_table_is_told_with_its_verdict(table: PublishedTable) -> None:
+def test_the_table_is_printed_with_its_verdict(table: PublishedTable) -> None:
     told = list(table_lines(table))
     assert "79 rows of appendix B" in told[0]
     assert sum(line.startswith("  ok ") for line in told) == 2

@@ -22,13 +22,13 @@ def found(tmp_path_factory: pytest.TempPathFactory) -> Sourced:
     return run_points(made_run(folder, DESIGN, alone=[4], metadata={"uncertainty.temperature_k": "0.5"}))
 
 
-def test_what_was_measured_is_fitted_and_what_was_asked_for_tells_the_cell(found: Sourced) -> None:
+def test_measured_values_are_fitted_and_requested_values_name_the_cell(found: Sourced) -> None:
     first = found.points[0]
     assert first.nominal == (25.0, 100.0, 0.3)
     assert first.measured == pytest.approx((25.0 + WARM_K, 100.0 + LOAD_OFF_N, 0.3))
 
 
-def test_repeats_tell_the_scatter_of_their_mean(found: Sourced) -> None:
+def test_repeats_give_the_scatter_of_their_mean(found: Sourced) -> None:
     first = found.points[0]
     assert first.type_a == pytest.approx(0.01 / sqrt(3.0), rel=1e-3)
     assert first.df == 6.0  # pooled over the three conditions of three repeats
@@ -45,7 +45,7 @@ def test_a_condition_has_zeros_and_drift_of_its_own_and_no_repeats_among_them(fo
         assert one.own == pytest.approx(hypot(zero / one.value, zero, drift), rel=1e-6)
 
 
-def test_conditions_scatter_as_published_of_the_compound_or_as_the_recipe_says(tmp_path: Path) -> None:
+def test_conditions_scatter_as_published_of_the_compound_or_as_the_recipe_states(tmp_path: Path) -> None:
     for name, compound, metadata, expected in (
         ("first", "1#", {}, 0.032),
         ("third", "3#", {}, 0.059),
@@ -55,7 +55,7 @@ def test_conditions_scatter_as_published_of_the_compound_or_as_the_recipe_says(t
         assert [one.between for one in points] == [expected] * 2
 
 
-def test_what_all_conditions_of_a_run_share_goes_with_it(found: Sourced) -> None:
+def test_errors_shared_by_all_conditions_of_a_run_go_with_it(found: Sourced) -> None:
     gain, wheel, thermometer = found.points[0].source.common
     assert (wheel.standard, wheel.piece) == (pytest.approx(0.03), found.points[0].piece)
     assert 0.005 < gain.standard < 0.03 and gain.variable is None
@@ -64,7 +64,7 @@ def test_what_all_conditions_of_a_run_share_goes_with_it(found: Sourced) -> None
     assert len({one.source for one in found.points}) == 1
 
 
-def test_what_laws_do_not_know_or_nobody_should_rely_on_is_left_out_with_the_reason(tmp_path: Path) -> None:
+def test_conditions_outside_the_laws_or_unreliable_are_left_out_with_the_reason(tmp_path: Path) -> None:
     found = run_points(made_run(tmp_path / "one", DESIGN, sideslip={1: 10.0}, carried=[2], failed=[3]))
     assert [one.nominal for one in found.points] == [DESIGN[3]]
     assert [reason for _, reason in found.left_out] == [
@@ -75,6 +75,6 @@ def test_what_laws_do_not_know_or_nobody_should_rely_on_is_left_out_with_the_rea
     assert found.left_out[0][0] == "one/1 (1#, 300 mm/s, 100 N, sideslip 10 deg, 25 degC)"
 
 
-def test_what_is_no_run_is_refused(tmp_path: Path) -> None:
+def test_a_folder_that_is_no_run_is_refused(tmp_path: Path) -> None:
     with pytest.raises(StoreError):
         run_points(tmp_path)

@@ -35,7 +35,7 @@ def enabled(devices: Devices) -> None:
         drive.state = State.OPERATION_ENABLED
 
 
-def test_what_was_never_heard_is_stale(devices: Devices) -> None:
+def test_a_device_never_received_is_stale(devices: Devices) -> None:
     r = filled(devices)
     stamps = (r.wheel_at_s, r.belt_at_s, r.press_at_s, r.cell_at_s, r.surface_at_s, r.jacket_at_s)
     assert set(stamps) == {float("-inf")}
@@ -54,7 +54,7 @@ def test_slip_is_the_resultant_of_speeds_and_sideslip(devices: Devices) -> None:
 
 
 @pytest.mark.parametrize("late", ["sideslip", "camber"])
-def test_positions_are_as_old_as_the_drive_that_was_heard_of_least_lately(devices: Devices, late: str) -> None:
+def test_positions_are_as_old_as_the_drive_with_the_oldest_report(devices: Devices, late: str) -> None:
     for name, drive in devices.axes.positioned.items():
         drive.stamp_s = 1.0 if name == late else 2.0
     r = Readings(diameter_mm=90.0)
@@ -133,7 +133,7 @@ def test_a_quick_stop_leaves_the_press_its_retraction(devices: Devices) -> None:
     assert devices.axes.wheel.goal is devices.axes.belt.goal is Goal.QUICK_STOP
 
 
-def test_disabled_drives_are_told_so(devices: Devices) -> None:
+def test_disabled_drives_get_their_command(devices: Devices) -> None:
     devices.apply(Setpoints())
     assert all(drive.goal is Goal.DISABLED for drive in devices.drives)
     assert devices.axes.press.outputs == 0
