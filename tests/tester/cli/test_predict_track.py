@@ -108,7 +108,7 @@ def test_moduli_held_beyond_their_table_are_reported(
     assert "extrapolated" in capsys.readouterr().err
 
 
-def test_a_table_reports_its_time_and_its_error(
+def test_a_table_reports_its_size_and_its_error(
     capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     def at_once(slow: tabulated.LawOfParts, span: TableSpan) -> tuple[TabulatedLaw, object, object]:

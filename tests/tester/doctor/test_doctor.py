@@ -79,7 +79,7 @@ def test_another_kind_of_rig_is_also_checked() -> None:
     assert any(line.split()[1] == "chamber:" and "(the rig file allows 2500 ms)" in line for line in lines)
 
 
-def test_slow_checks_are_done_once() -> None:
+def test_slow_checks_are_announced_once() -> None:
     wires = SimulatedWires(load_rig("sim"))
     told: list[str] = []
     examination = Examination(

@@ -72,7 +72,7 @@ def test_no_sample_of_a_hold_belongs_to_a_repeat(held_run: Simulation) -> None:
     assert keys == {0.0}
 
 
-def test_the_end_of_a_hold_says_how_long_it_lasted(held_run: Simulation) -> None:
+def test_the_end_of_a_hold_states_its_duration(held_run: Simulation) -> None:
     events = held_run.notes.events
     changes = "run -> hold", "hold ->"
     began, ended = (next(t for t, _, text, _ in events if text.startswith(change)) for change in changes)
@@ -98,7 +98,7 @@ def test_a_pre_grinding_that_was_held_grinds_its_whole_time() -> None:
     assert len(ground) == pytest.approx(2000, abs=60)
 
 
-def test_commands_that_do_not_apply_say_so_and_change_nothing(running: Simulation) -> None:
+def test_commands_that_do_not_apply_are_refused_and_change_nothing(running: Simulation) -> None:
     before = mode(running)
     assert "nothing to release" in running.run.request_release()
     assert "nothing to acknowledge" in running.run.request_ack()
@@ -136,7 +136,7 @@ def test_an_abort_out_of_a_hold_ends_at_standstill(running: Simulation) -> None:
     assert running.run.outcome is Outcome.STOPPED and running.world.axes["wheel"].axis.value == 0.0
 
 
-def test_a_trip_waits_for_its_acknowledgement_where_it_is_told_to(running: Simulation) -> None:
+def test_a_trip_waits_for_its_acknowledgement_on_request(running: Simulation) -> None:
     running.run.stays_latched = True
     running.world.axes["belt"].fault(OVERCURRENT)
     running.until(lambda s: mode(s) is Mode.LATCHED)
@@ -148,7 +148,7 @@ def test_a_trip_waits_for_its_acknowledgement_where_it_is_told_to(running: Simul
     assert running.run.outcome is Outcome.TRIPPED
 
 
-def test_a_trip_is_recorded_with_value_limit_and_unit_and_who_acknowledged_it(running: Simulation) -> None:
+def test_a_trip_is_recorded_with_value_limit_unit_and_acknowledger(running: Simulation) -> None:
     running.run.stays_latched = True
     running.run.engine.control.view.limits.load_n = 150.0
     running.until(lambda s: mode(s) is Mode.LATCHED)

@@ -39,7 +39,7 @@ def test_every_drive_is_configured_online_and_homed(simulation: Simulation) -> N
     assert all(drive.homed for drive in drives if drive.config.mode == "position")
 
 
-def test_the_press_has_its_limit_of_torque_and_says_so(simulation: Simulation) -> None:
+def test_the_press_has_its_limit_of_torque_and_reports_it(simulation: Simulation) -> None:
     press = connect(simulation).devices.axes.press
     assert press.parameters[MAX_TORQUE, 0] == press.config.max_torque_per_mille == 230
     assert simulation.world.axes["press"].torque_limit_nm == pytest.approx(0.46)

@@ -44,12 +44,12 @@ def lamp() -> Lamp:
     return made
 
 
-def test_a_run_commands_what_is_wanted(lamp: Lamp) -> None:
+def test_a_run_commands_its_demand(lamp: Lamp) -> None:
     assert lamp.mode is Mode.RUN and lamp.control.state.setpoints.light == 1.0
     assert lamp.texts("mode") == ["idle -> armed: every level clear", "armed -> run: start"]
 
 
-def test_a_level_that_holds_stands_in_the_way_of_arming() -> None:
+def test_an_active_level_prevents_arming() -> None:
     control = LampControl()
     assert control.start(LampReadings(lamp_c=90.0)) == "not armed: chain, hot"
     assert control.state.mode is Mode.IDLE
@@ -66,7 +66,7 @@ def test_a_row_trips_when_it_has_held_for_its_delay(lamp: Lamp) -> None:
     assert trip.text == "the lamp is hot (90 degC)"
 
 
-def test_a_trip_names_what_drives_and_devices_say(lamp: Lamp) -> None:
+def test_a_trip_names_the_reports_of_drives_and_devices(lamp: Lamp) -> None:
     lamp.readings.safety_chain, lamp.readings.drive_fault = False, "lamp drive: fault"
     lamp.scan()
     assert lamp.texts("trip") == ["chain: the safety chain is open [lamp drive: fault] (20 degC)"]
@@ -81,13 +81,13 @@ def test_a_second_cause_is_an_alarm_and_the_harder_reaction_wins(lamp: Lamp) -> 
     assert lamp.mode is Mode.FAST_STOP and len(lamp.texts("alarm")) == 1
 
 
-def test_a_warning_stops_nothing_and_is_said_once_while_it_stands(lamp: Lamp) -> None:
+def test_a_warning_stops_nothing_and_is_reported_once_while_it_lasts(lamp: Lamp) -> None:
     lamp.readings.now_s += 2.0
     lamp.scan()
     assert lamp.mode is Mode.RUN and lamp.texts("warning") == ["late: a scan came late"]
 
 
-def test_a_stop_notes_what_it_begins_from_and_ends_in_idle(lamp: Lamp) -> None:
+def test_a_stop_records_its_initial_state_and_ends_in_idle(lamp: Lamp) -> None:
     lamp.control.request_stop(lamp.readings.now_s, "enough")
     lamp.scans(2)
     assert lamp.control.called == ["note stop", "stop outputs: stopping", "stop outputs: stopping", "note rest"]
@@ -122,7 +122,7 @@ def test_a_machine_that_must_not_stand_hot_cools_first(lamp: Lamp) -> None:
     assert lamp.texts("mode")[-2:] == ["cooldown -> stopping: cool", "stopping -> idle: standstill"]
 
 
-def test_a_hold_keeps_what_the_kind_says_and_a_release_goes_on(lamp: Lamp) -> None:
+def test_a_hold_keeps_the_demand_of_the_kind_and_a_release_continues(lamp: Lamp) -> None:
     assert lamp.control.request_hold(lamp.demand, lamp.readings.now_s, "held") == ""
     lamp.scan()
     assert lamp.mode is Mode.HOLD and lamp.control.state.setpoints.light == 0.5
@@ -139,7 +139,7 @@ def test_a_hold_that_lasts_too_long_ends_in_a_stop(lamp: Lamp) -> None:
     assert lamp.mode is Mode.STOPPING and lamp.control.state.stop_requested == "held too long"
 
 
-def test_what_has_power_at_rest_loses_it(lamp: Lamp) -> None:
+def test_an_output_with_power_at_rest_loses_it(lamp: Lamp) -> None:
     lamp.control.request_stop(lamp.readings.now_s, "enough")
     lamp.scans(2)
     lamp.readings.now_s += 0.05
@@ -151,5 +151,5 @@ def test_what_has_power_at_rest_loses_it(lamp: Lamp) -> None:
 @pytest.mark.parametrize(
     ("value", "command"), [(0.5, 0.5), (-3.0, -2.0), (3.0, 2.0), (float("nan"), 0.0), (float("inf"), 0.0)]
 )
-def test_a_command_is_bounded_and_what_is_no_number_is_zero(value: float, command: float) -> None:
+def test_a_command_is_bounded_and_not_a_number_is_zero(value: float, command: float) -> None:
     assert bounded(value, 2.0) == command

@@ -155,7 +155,7 @@ def test_sliding_and_wear_are_those_of_the_plant(noisy_run: Simulation) -> None:
     assert wheel.cold_mm == pytest.approx(plant.cold_mm, abs=0.01)
 
 
-def test_a_copy_in_the_middle_of_a_burst_goes_on_identically(mid_burst: Simulation) -> None:
+def test_a_copy_in_the_middle_of_a_burst_continues_identically(mid_burst: Simulation) -> None:
     first, second = deepcopy(mid_burst), deepcopy(mid_burst)
     for run in (first, second):
         run.until(lambda s: s.now > mid_burst.now + 8.0)
@@ -170,7 +170,7 @@ def test_a_copy_shares_nothing_with_its_original(mid_burst: Simulation) -> None:
     assert len(mid_burst.notes.rows) == rows and mid_burst.world.plant.force_z_n == force
 
 
-def test_a_copied_run_ends_as_one_that_was_never_copied(mid_burst: Simulation) -> None:
+def test_a_copied_run_ends_like_its_original(mid_burst: Simulation) -> None:
     copied, straight = deepcopy(mid_burst).to_the_end(), Simulation(seed=1).to_the_end()
     assert copied.notes.rows == straight.notes.rows and copied.run.outcome is straight.run.outcome
 

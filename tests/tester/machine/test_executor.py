@@ -73,7 +73,7 @@ def test_steps_are_served_in_their_order(procedures: LampProcedures) -> None:
     assert procedures.began == shown == ["a", "b"] and not executor.failed and executor.activity is None
 
 
-def test_what_has_to_be_done_first_is_put_before_a_step(procedures: LampProcedures) -> None:
+def test_preparations_are_inserted_before_a_step(procedures: LampProcedures) -> None:
     procedures.first["b"] = Unforeseen(steps=[PromptStep(9, "x"), PromptStep(9, "y")])
     walk(procedures, "a", "b")
     assert procedures.began == ["a", "x", "y", "b"]
@@ -85,7 +85,7 @@ def test_an_activity_that_no_step_asks_for_has_a_title_of_its_own(procedures: La
     assert shown == ["a", "look at it", "b"] and procedures.began == ["a", "b"]
 
 
-def test_what_a_step_leads_to_comes_before_the_plan_goes_on(procedures: LampProcedures) -> None:
+def test_consequences_of_a_step_come_before_the_rest_of_the_plan(procedures: LampProcedures) -> None:
     procedures.then["a"] = Unforeseen(Scans("still a"), steps=[PromptStep(9, "x")])
     _, shown = walk(procedures, "a", "b")
     assert shown == procedures.began == ["a", "x", "b"]

@@ -73,7 +73,7 @@ def test_a_cause_that_is_only_watched_while_something_is_wanted_is_asked_for_by_
     assert TABLE.names_of(TABLE.still_there(scan(loaded=False))) == ["loaded"]
 
 
-def test_masks_go_by_what_rows_say_of_themselves() -> None:
+def test_masks_follow_the_attributes_of_rows() -> None:
     assert TABLE.names_of(TABLE.at_rest) == ["ending"] and TABLE.names_of(TABLE.warnings) == ["warning"]
 
 
@@ -92,7 +92,7 @@ def test_a_row_is_timed_by_its_delay() -> None:
     assert TABLE.delays_s({DELAY: 0.5}) == (0.5,) * 6 and TABLE.nothing_pending() == [inf] * 6
 
 
-def test_a_group_tells_every_condition_that_holds() -> None:
+def test_a_group_returns_every_active_condition() -> None:
     rows = [replace(ROW, watch=NEVER), ROW, replace(ROW, applies=never), LATE, replace(LATE, applies=never)]
     group = Group(((1 << i, row) for i, row in enumerate(rows)), VALUES)
     assert group.held(scan(late_s=4.0)) == 0b1010 and group.held(scan(late_s=3.0)) == 0b0010

@@ -98,7 +98,7 @@ def test_the_first_fast_scans_after_slow_ones_bear_one_missing_answer_and_trip_o
         assert tripped(row, late_by(late_s), {lost, lost + 1}, periods_s)[:1] == [lost + 2]
 
 
-def test_the_allowance_is_what_this_scan_and_the_one_before_came_late() -> None:
+def test_the_allowance_is_the_lateness_of_this_scan_and_the_one_before() -> None:
     usual_s = PARAMETERS[STALE_CAN_SCANS] * PERIOD_S
     assert drive_data_allowed_s(view(late_s=0.0, late_before_s=0.0)) == pytest.approx(usual_s)
     assert drive_data_allowed_s(view(late_s=0.03, late_before_s=0.0)) == pytest.approx(usual_s + 0.03)

@@ -46,7 +46,7 @@ def test_most_scans_of_the_wait_are_not_made(every: TrackBench, leapt: TrackBenc
     assert leapt.run.engine.scans < every.run.engine.scans - 15.0 * leapt.run.engine.leapt_s
 
 
-def test_rig_time_includes_what_was_leapt(every: TrackBench, leapt: TrackBench) -> None:
+def test_rig_time_includes_leaps(every: TrackBench, leapt: TrackBench) -> None:
     assert leapt.now == pytest.approx(every.now, abs=1e-3)
     assert leapt.world.now_s == pytest.approx(every.world.now_s - leapt.run.engine.leapt_s, abs=1e-3)
 
@@ -57,7 +57,7 @@ def test_the_record_states_how_much_was_leapt(every: TrackBench, leapt: TrackBen
     assert not [text for _, kind, text in every.kept.events if kind == "leap"]
 
 
-def test_the_record_of_a_run_that_is_stopped_in_a_wait_states_it_too() -> None:
+def test_the_record_of_a_run_stopped_in_a_wait_also_states_it() -> None:
     bench = tempering()
     bench.run.request_stop("asked")
     bench.to_the_end()

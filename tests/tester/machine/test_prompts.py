@@ -19,7 +19,7 @@ from tests.tester.kinds.wheel_on_belt.bench import make_bench
         (False, True, False, True),
     ],
 )
-def test_only_a_person_answers_what_brings_a_person_near_a_real_rig(
+def test_only_a_person_answers_questions_that_bring_a_person_near_a_real_rig(
     automatic: bool, real: bool, near: bool, asked: bool
 ) -> None:
     prompts = Prompts(automatic=automatic, real=real)

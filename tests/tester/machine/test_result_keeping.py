@@ -134,7 +134,7 @@ def test_no_valid_repeat_makes_no_value(door: Door) -> None:
     assert "insufficient: none of 3 repeats is valid" in line
 
 
-def test_a_condition_that_cannot_be_held_says_so_with_rate_and_band(door: Door) -> None:
+def test_a_condition_that_cannot_be_held_is_reported_with_rate_and_band(door: Door) -> None:
     door.repeat(1, Ending.CANNOT_HOLD, detail="surface warms by 9 K/s")
     line, written = door.end(ConditionEnd(Ending.CANNOT_HOLD, "surface warms by 9 K/s", 9.0, 3.3))
     assert written[0] == ConditionStatus.CANNOT_HOLD.value
@@ -147,7 +147,7 @@ def test_a_condition_that_was_left_before_its_first_repeat_is_stored(door: Door)
     assert written[:2] == (ConditionStatus.NOT_REACHED.value, "surface at 31 degC")
 
 
-def test_enough_valid_repeats_outlive_one_that_was_not_reached(door: Door) -> None:
+def test_enough_valid_repeats_outweigh_an_unreached_one(door: Door) -> None:
     for number in (1, 2):
         door.repeat(number, Ending.COMPLETE)
     door.repeat(3, Ending.NOT_REACHED, detail="surface at 43 degC")
@@ -162,7 +162,7 @@ def test_a_condition_does_not_inherit_the_repeats_of_the_one_before(door: Door) 
     assert written[0] == ConditionStatus.NOT_REACHED.value
 
 
-def test_a_plan_s_conditions_are_stored_as_the_recipe_says() -> None:
+def test_a_plan_s_conditions_are_stored_as_in_the_recipe() -> None:
     records = list(condition_records(plan_of(SHORT.replace("load: 200 N", "load: [100 N, 200 N]"))))
     assert [(r.condition, r.row, r.setpoint.value("load"), r.compound) for r in records] == [
         (1, 1, 100.0, "1#"),
@@ -200,7 +200,7 @@ def test_no_more_repeats_are_made_than_at_most(door: Door) -> None:
     assert written[0] == ConditionStatus.OK.value and "carry-over" in line and "drift not shown" in line
 
 
-def test_what_gives_no_revolutions_is_not_tried_for_ever(door: Door) -> None:
+def test_a_repeat_without_revolutions_is_not_retried_for_ever(door: Door) -> None:
     for number in (1, 2, 3):
         door.repeat(number, Ending.INCOMPLETE, blocks=7)
     assert not door.results.another(STEP)
@@ -217,7 +217,7 @@ def test_repeated_until_the_repeatability_is_reached(door: Door) -> None:
     assert made == 6
 
 
-def test_at_least_four_repeats_tell_of_repeatability(door: Door) -> None:
+def test_at_least_four_repeats_give_a_repeatability(door: Door) -> None:
     step = replace(STEP, until_percent=2.0)
     for number in (1, 2, 3):
         door.repeat(number, Ending.COMPLETE, step=step)

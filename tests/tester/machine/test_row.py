@@ -62,7 +62,7 @@ def test_a_limit_that_is_not_known_trips() -> None:
 
 
 @pytest.mark.parametrize(("force_n", "limit_n"), [(-1.5, -1.0), (3.5, 3.0)])
-def test_a_trip_between_two_limits_records_the_one_that_is_passed(force_n: float, limit_n: float) -> None:
+def test_a_trip_between_two_limits_records_the_exceeded_one(force_n: float, limit_n: float) -> None:
     watch = within("", lambda v: (-1.0, v.force_n, v.limit_n), "N")
     assert watch.holds(Pull(force_n)) and not watch.holds(Pull(0.0))
     assert watch.compared(Pull(force_n)) == Compared(force_n, limit_n, "N")

@@ -23,7 +23,7 @@ def test_a_recipe_that_is_finished_is_done(quiet_run: Simulation) -> None:
     assert (quiet_run.run.outcome, quiet_run.run.reason) == (Outcome.DONE, "")
 
 
-def test_a_run_that_is_done_stands_still_and_holds_no_trip(quiet_run: Simulation) -> None:
+def test_a_finished_run_is_at_rest_without_a_trip(quiet_run: Simulation) -> None:
     world, state = quiet_run.world, quiet_run.run.engine.control.state
     assert world.axes["wheel"].axis.value == world.axes["belt"].axis.value == 0.0
     assert state.mode is Mode.IDLE and state.trip is None
@@ -155,7 +155,7 @@ def test_an_open_question_waits_and_a_stop_ends_the_waiting() -> None:
     assert simulation.run.outcome is Outcome.STOPPED
 
 
-def test_what_fails_the_recipe_fails_the_run(running: Simulation) -> None:
+def test_a_failure_of_the_recipe_fails_the_run(running: Simulation) -> None:
     running.run.engine.executor.failed = "load cell zero drifted"
     running.run.engine.executor.finished = True
     running.to_the_end()

@@ -64,7 +64,7 @@ def test_a_row_is_all_floats(bench: Bench) -> None:
     assert {type(value) for value in bench.notes.rows[-1]} == {float}
 
 
-def test_the_last_row_is_there_for_whoever_counts(bench: Bench) -> None:
+def test_the_last_row_is_available_for_counting(bench: Bench) -> None:
     Sampler(bench.notes, QUANTITIES).record(bench.ctx, Setpoints())
     assert bench.ctx.sample is bench.notes.rows[-1]
 

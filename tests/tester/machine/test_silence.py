@@ -48,7 +48,7 @@ def test_a_line_has_the_name_of_the_rig_file_and_its_devices() -> None:
     assert name_of(Bench().link, there) == "unnamed"
 
 
-def test_all_refusals_are_told_each_with_whose_it_is() -> None:
+def test_all_refusals_are_reported_each_with_its_device() -> None:
     _, there = two_on_a_line()
     wheel, belt = drives(0.0, 0.0)
     belt.refused, there[1].driver.station.refused = "0x6076:00: read 1", "exception 2"

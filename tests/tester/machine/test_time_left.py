@@ -47,7 +47,7 @@ def played() -> Played:
     return Played()
 
 
-def test_a_run_that_goes_as_estimated_has_what_is_estimated_left(played: Played) -> None:
+def test_a_run_as_estimated_has_the_estimated_time_left(played: Played) -> None:
     total = 100.0 * played.steps
     for place in range(played.steps):
         assert played.at(100.0 * place, place) == pytest.approx(total - 100.0 * place)
@@ -69,7 +69,7 @@ def test_a_run_that_is_given_up_has_no_time_left_and_keeps_its_share(played: Pla
     assert played.left.standing().share == pytest.approx(share, abs=1e-9) and share < 0.2
 
 
-def test_conditions_that_take_thrice_as_long_are_expected_to_go_on_so(played: Played) -> None:
+def test_conditions_that_take_thrice_as_long_are_expected_to_continue_so(played: Played) -> None:
     first = played.first_condition
     for place in range(first + 1):
         played.at(100.0 * place, place)
@@ -79,7 +79,7 @@ def test_conditions_that_take_thrice_as_long_are_expected_to_go_on_so(played: Pl
     assert left == pytest.approx(planned + 100.0 * conditions * 200.0 / (100.0 + PRIOR_S), rel=0.1) and left > planned
 
 
-def test_what_other_kinds_of_steps_took_says_nothing_of_conditions() -> None:
+def test_times_of_other_kinds_of_steps_do_not_affect_conditions() -> None:
     quick, slow = Played(), Played()
     for one, each in ((quick, 100.0), (slow, 1000.0)):
         for place in range(one.first_condition + 1):
@@ -90,7 +90,7 @@ def test_what_other_kinds_of_steps_took_says_nothing_of_conditions() -> None:
     assert (slow.left.standing().left_s or 0.0) - (quick.left.standing().left_s or 0.0) == pytest.approx(longer)
 
 
-def test_a_condition_s_repeats_tell_its_duration_once_one_is_done(played: Played) -> None:
+def test_a_condition_s_repeats_predict_its_duration_once_one_is_done(played: Played) -> None:
     second = played.first_condition + 1
     for place in range(second + 1):
         played.at(100.0 * place, place)
@@ -104,7 +104,7 @@ def test_a_condition_s_repeats_tell_its_duration_once_one_is_done(played: Played
     assert left >= 600.0 + 100.0 * behind
 
 
-def test_a_step_that_overruns_is_never_said_to_be_over(played: Played) -> None:
+def test_a_step_that_overruns_always_has_time_left(played: Played) -> None:
     played.at(0.0, played.steps - 1)
     assert (played.at(1000.0, played.steps - 1) or 0.0) >= 100.0
 
@@ -117,7 +117,7 @@ def test_the_share_of_a_repeat(burst: int, revolutions: float, share: float) -> 
     assert share_of_repeat(progress) == pytest.approx(share)
 
 
-def test_the_first_repeat_on_a_piece_runs_in_and_tells_nothing_of_the_others(played: Played) -> None:
+def test_the_first_repeat_on_a_piece_runs_in_and_predicts_no_others(played: Played) -> None:
     first = played.first_condition
     for place in range(first + 1):
         played.at(100.0 * place, place)

@@ -60,7 +60,7 @@ def tls_of(certificate: Path) -> ssl.SSLContext:
     return context
 
 
-def test_a_mail_has_what_a_person_needs() -> None:
+def test_a_mail_has_everything_a_person_needs() -> None:
     with MailRelay() as relay:
         mail(relay).send(LETTER, ANNA)
     message = relay.taken[0].message
@@ -107,7 +107,7 @@ def test_a_recipient_that_is_refused(code: int, final: bool) -> None:
     assert caught.value.final is final
 
 
-def test_no_relay_there_is_told_in_words() -> None:
+def test_a_missing_relay_is_reported_in_words() -> None:
     with MailRelay() as relay:
         gone = mail(relay)
     with pytest.raises(NotDeliveredError, match="no program listens there"):

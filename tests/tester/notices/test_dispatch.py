@@ -194,7 +194,7 @@ def test_an_address_that_is_refused_for_good_is_given_up_on_record_and_holds_up_
         assert len(relay.taken) == 1
 
 
-def test_what_waits_for_three_days_is_given_up_on_record(scene: OutboxScene, channel: PlayedChannel) -> None:
+def test_a_notice_that_waits_for_three_days_is_abandoned_on_record(scene: OutboxScene, channel: PlayedChannel) -> None:
     channel.fails = lambda: NotDeliveredError("no answer")
     scene.take(notice(1))
     scene.pass_time(OLD_S + 120.0)

@@ -52,7 +52,7 @@ def test_only_its_owner_may_read_it(tmp_path: Path) -> None:
     assert stat.S_IMODE(file.path.parent.stat().st_mode) == 0o700
 
 
-def test_a_large_outbox_loses_at_a_start_only_what_is_old_and_settled(
+def test_a_large_outbox_loses_at_a_start_only_old_and_settled_notices(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     channel = PlayedChannel()

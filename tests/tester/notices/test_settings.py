@@ -98,7 +98,7 @@ def test_without_a_file_the_command_of_the_service_is_the_only_channel(tmp_path:
         ("command: {run: \"a\\u202eb\"}\n", "1:16: the character U+202E is not accepted"),
     ],
 )  # fmt: skip
-def test_a_mistake_has_its_place_and_what_is_expected(tmp_path: Path, text: str, expected: str) -> None:
+def test_a_mistake_has_its_place_and_the_expected_form(tmp_path: Path, text: str, expected: str) -> None:
     found = problems(tmp_path, text)
     assert found[0].startswith(expected), found
     assert "hunter2" not in found[0] and "tk_9" not in found[0]

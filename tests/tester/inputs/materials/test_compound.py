@@ -148,7 +148,7 @@ def test_problems_of_a_file_beside_are_reported_at_its_own_lines(tmp_path: Path)
     assert problem == 'dma.csv:1:1: "E\'" has no unit (expected Pa, kPa, MPa or GPa; units: {"E\'": Pa})'
 
 
-def test_doubts_name_their_values(tmp_path: Path) -> None:
+def test_doubts_name_their_subject(tmp_path: Path) -> None:
     assert doubts(tmp_path, FULL.replace("decade_k: 8\n", "")) == [
         "c.yaml:11:1: measured at 1 Hz alone, and decade_k is missing: 8 K a decade (paper G) counts"
     ]

@@ -333,9 +333,7 @@ def test_checking_returns_the_recipe_with_its_text() -> None:
         ),
     ],
 )
-def test_a_value_beyond_the_rig_is_reported_with_the_source_of_the_limit(
-    old: str, new: str, problem: str
-) -> None:
+def test_a_value_beyond_the_rig_is_reported_with_the_source_of_the_limit(old: str, new: str, problem: str) -> None:
     assert problem in problems(with_line(old, new))
 
 

@@ -33,14 +33,14 @@ def refused(**changed: str) -> str:
     return problem.message
 
 
-def test_a_controller_without_a_lease_needs_a_word_about_what_ends_its_heat() -> None:
+def test_a_controller_without_a_lease_needs_a_statement_of_its_heat_cut_off() -> None:
     said = refused(heat_off="")
     assert said.startswith("Eurotherm 3200 temperature controller has no lease: it heats on when the PC is silent")
     assert "fallback: " in said
     assert "relay: " in said
 
 
-def test_one_that_has_a_lease_needs_none() -> None:
+def test_a_controller_with_a_lease_needs_none() -> None:
     assert "stops heating by itself (2 s without a command)" in left_alone(
         real(heat_off="", profile="simulated_jacket")
     )
@@ -55,5 +55,5 @@ def test_another_word_is_refused_with_those_there_are() -> None:
     assert refused(heat_off="hope") == "hope (expected fallback or relay)"
 
 
-def test_what_the_jacket_does_by_itself_is_told() -> None:
+def test_the_jackets_own_reaction_is_reported() -> None:
     assert "falls back to a setpoint of no heat (5 s without a command)" in left_alone(real())

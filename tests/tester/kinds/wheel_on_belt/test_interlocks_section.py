@@ -64,5 +64,5 @@ def test_the_section_has_a_field_for_every_parameter() -> None:
     assert [one.name for one in fields(InterlocksConfig)] == [one.name for one in PARAMETERS]
 
 
-def test_the_packaged_file_says_what_the_rows_say() -> None:
+def test_the_packaged_file_agrees_with_the_rows() -> None:
     assert values_of(RigConfig.of(load_rig("sim")).interlocks, PARAMETERS) == {one: one.value for one in PARAMETERS}

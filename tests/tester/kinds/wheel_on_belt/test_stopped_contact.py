@@ -60,7 +60,7 @@ def test_torque_limits_bound_the_friction_of_any_rubber() -> None:
         assert contact(weak, compound, 430.0, 0.8, 90.0).friction_n == pytest.approx(8.0 / least_m)
 
 
-def test_a_rig_without_the_relay_refuses_what_the_program_cannot_hold() -> None:
+def test_a_rig_without_the_relay_refuses_heat_that_the_program_cannot_limit() -> None:
     text = SHORT.replace('"1#"', '"3#"')
     assert not check(text, rig(), PART, "x.yaml")
     (problem, *_) = check(text, rig(NO_RELAY), PART, "x.yaml")
@@ -77,7 +77,7 @@ def test_the_lateness_of_the_advice_is_enough() -> None:
 
 
 @pytest.mark.parametrize(("compound", "named"), [("1#", False), ("3#", True)])
-def test_a_run_names_what_it_counts_on(compound: str, named: bool) -> None:
+def test_a_run_names_its_assumptions(compound: str, named: bool) -> None:
     text = SHORT.replace('"1#"', f'"{compound}"').replace("200 N", "60 N").replace("100 N", "60 N")
     (line,) = counted_on(rig(), plan_of(text, ()))
     assert ("COUNTED ON" in line) is named

@@ -23,7 +23,7 @@ def filled(path: Path) -> CommissionRecord:
     return record
 
 
-def test_what_was_added_reads_back(tmp_path: Path) -> None:
+def test_an_added_entry_reads_back(tmp_path: Path) -> None:
     written = filled(tmp_path / "r.jsonl")
     read = CommissionRecord(tmp_path / "r.jsonl", utc, "you")
     assert read.entries == written.entries
@@ -33,7 +33,7 @@ def test_what_was_added_reads_back(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("cut", range(1, 400, 7))
-def test_a_line_cut_off_by_a_kill_is_passed_over_and_work_goes_on_behind_it(tmp_path: Path, cut: int) -> None:
+def test_a_line_cut_off_by_a_kill_is_skipped_and_work_continues_behind_it(tmp_path: Path, cut: int) -> None:
     path = tmp_path / "r.jsonl"
     filled(path)
     whole = path.read_bytes()
@@ -63,7 +63,7 @@ def test_a_line_taken_out_is_found(tmp_path: Path) -> None:
         CommissionRecord(path, utc, "me")
 
 
-def test_what_is_no_number_is_not_written(tmp_path: Path) -> None:
+def test_not_a_number_is_not_written(tmp_path: Path) -> None:
     record = CommissionRecord(tmp_path / "r.jsonl", utc, "me")
     with pytest.raises(ValueError, match="JSON"):
         record.add("rig", "", "", "one", READING, "", {"x": float("nan")})
@@ -82,7 +82,9 @@ STEP = CommissionStep("jog", "a jog", ("can",))
         (REFUSED, True, "to be done again (refused, 2026-11-23): told"),
     ],
 )
-def test_a_step_stands_by_its_newest_entry_and_the_rig_file(what: str, same: bool, words: str, tmp_path: Path) -> None:
+def test_the_newest_entry_and_the_rig_file_decide_the_state_of_a_step(
+    what: str, same: bool, words: str, tmp_path: Path
+) -> None:
     rig = load_rig("sim")
     record = CommissionRecord(tmp_path / "r.jsonl", lambda: "2026-11-23T10:00:00Z", "me")
     (fresh,) = standing_of(record, (STEP,), rig)

@@ -73,7 +73,7 @@ def test_a_refusal_repeats_its_part_and_not_the_step() -> None:
     ]  # fmt: skip
 
 
-def test_a_person_who_leaves_has_the_refusal() -> None:
+def test_a_person_who_leaves_keeps_the_refusal() -> None:
     step = Two()
     with pytest.raises(StepRefused, match="too far"):
         answered(in_stages(notes(), step.first, judged(step.first, step.judge)), ["9", "leave"])

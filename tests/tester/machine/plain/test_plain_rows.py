@@ -102,7 +102,9 @@ CASES = [
 
 
 @pytest.mark.parametrize(("row", "change", "after_s"), CASES, ids=[f"{row}-{n}" for n, (row, _, _) in enumerate(CASES)])
-def test_a_row_trips_after_its_delay_and_everything_is_told_to_stop(row: str, change: Change, after_s: float) -> None:
+def test_a_row_trips_after_its_delay_and_everything_is_commanded_to_stop(
+    row: str, change: Change, after_s: float
+) -> None:
     scans = Scans()
     scans.scan(19)
     scans.change = change
@@ -137,7 +139,7 @@ def test_a_stop_that_does_not_work_is_escalated_until_the_power_is_off() -> None
     assert any("stop not ended" in event.text for event in scans.control.state.events)
 
 
-def test_a_stop_ends_by_what_the_readings_show_and_not_before() -> None:
+def test_a_stop_ends_only_by_the_readings() -> None:
     scans = Scans()
     scans.scan(20)
     scans.control.request_stop(scans.now, "stop")
@@ -158,7 +160,7 @@ def test_a_stop_does_not_end_on_old_data() -> None:
 
 
 @pytest.mark.parametrize("change", [held("standing", False), held("drives_at_s", -inf), held("drives_at_s", nan)])
-def test_what_moves_at_rest_or_is_not_known_to_stand_loses_its_power(change: Change) -> None:
+def test_an_axis_that_moves_at_rest_or_is_unknown_loses_its_power(change: Change) -> None:
     scans = Scans()
     scans.control.request_stop(scans.now, "stop")
     scans.standing = True
@@ -180,7 +182,7 @@ def test_power_that_a_run_does_not_want_trips() -> None:
 
 
 @pytest.mark.parametrize("row", [*ROWS, SENSOR_SILENT], ids=lambda row: row.name)
-def test_every_row_says_what_it_compares_with_a_unit_and_tells_a_person(row: Interlock) -> None:
+def test_every_row_states_its_limits_with_a_unit_and_has_a_message(row: Interlock) -> None:
     assert row in TABLE.rows and row.cause and row.watch.level and row.reset
     for one in row.declared():
         assert one.value is not None and one.text and one.hardest and one.because
@@ -195,7 +197,7 @@ def test_a_kinds_own_rows_stand_behind_the_wires_and_a_silent_sensor_and_before_
 
 
 @pytest.mark.parametrize("asked", [150.0, -150.0, nan, inf])
-def test_a_demand_beyond_the_axis_is_bounded_and_one_that_is_no_number_is_none(asked: float) -> None:
+def test_a_demand_beyond_the_axis_is_bounded_and_not_a_number_is_no_demand(asked: float) -> None:
     scans = Scans()
     scans.demand.speeds["left"] = asked
     scans.scan()

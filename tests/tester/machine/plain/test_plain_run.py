@@ -36,7 +36,7 @@ def test_a_recipe_goes_through_every_specimen_and_repeat_and_ends_standing() -> 
     assert speeds(bench) == [0.0, 0.0] and bench.devices.all_off()
 
 
-def test_drives_get_the_speeds_that_the_kind_says_and_samples_count_only_at_speed() -> None:
+def test_drives_get_the_speeds_of_the_kind_and_samples_count_only_at_speed() -> None:
     bench = Bench().sliding()
     assert speeds(bench) == pytest.approx([10.0, -5.0], rel=0.02)
     assert bench.ctx.gate == 0
@@ -62,7 +62,7 @@ def test_stop_stops_within_the_ramp_and_takes_the_power_off(fast: bool, ramp_s: 
     assert bench.run.outcome is Outcome.STOPPED and bench.devices.all_off()
 
 
-def test_a_hold_stands_powered_and_the_repeat_is_done_again() -> None:
+def test_a_hold_is_at_rest_with_power_and_the_repeat_is_done_again() -> None:
     bench = Bench().sliding()
     assert bench.run.request_hold() == ""
     bench.until(lambda b: b.ctx.readings.standing, 5.0)
@@ -91,7 +91,7 @@ FAULTS = [
 
 
 @pytest.mark.parametrize(("fault", "row"), FAULTS, ids=[fault for fault, _ in FAULTS])
-def test_a_fault_trips_the_row_that_tells_it_and_the_other_drive_stops(fault: str, row: str | tuple[str, ...]) -> None:
+def test_a_fault_trips_its_row_and_the_other_drive_stops(fault: str, row: str | tuple[str, ...]) -> None:
     bench = Bench(can_wire=FaultyCanWire)
     language = machines.find(BenchRuns.plant).language(spec_of(bench.rig))
     script = FaultScript(language.parse_script([f"step slide + 1 s: {fault}"]))
@@ -113,7 +113,7 @@ def test_it_is_shown_that_every_drive_stops_without_our_heartbeat_before_anythin
     assert bench.run.connector.shown == shown and bench.plant.installed == []
 
 
-def test_a_drive_that_cannot_show_it_is_told() -> None:
+def test_a_drive_without_that_proof_is_reported() -> None:
     text = RIG.replace("node_id: 2,", "node_id: 2, proves_watchdog: false,").replace("withhold: 400", "withhold: 150")
     bench = Bench(rig=bench_rig(text)).until(lambda b: b.run.finished, 30.0)
     assert bench.run.outcome is Outcome.UNREACHABLE

@@ -136,7 +136,7 @@ def test_the_coefficient_has_its_uncertainty_as_it_grows(on: Front, desktop: Bro
     expect(page.locator(".growth")).to_contain_text("repeat 3")
 
 
-def test_steps_have_what_their_conditions_gave(on: Front, desktop: BrowserContext) -> None:
+def test_steps_show_the_results_of_their_conditions(on: Front, desktop: BrowserContext) -> None:
     page = on.paired(desktop, "look")
     done = PlanStep(3, "condition", "1#, 300 mm/s", "done", 60.0, 60.0, 60.0, 7)
     now = PlanStep(4, "condition", "200 N", "now", 60.0, None, 60.0, 2)
@@ -198,7 +198,9 @@ def test_hold_is_sent_under_the_page_s_name(on: Front, desktop: BrowserContext) 
     assert any(isinstance(order.action, Hold) for order in on.stage.fake.orders)
 
 
-def test_what_needs_a_code_asks_for_it_and_goes_only_with_the_right_one(on: Front, desktop: BrowserContext) -> None:
+def test_an_action_that_needs_a_code_asks_for_it_and_works_only_with_the_right_one(
+    on: Front, desktop: BrowserContext
+) -> None:
     page = on.paired(desktop, "control", "queue")
     page.get_by_role("button", name="Run now").click()
     dialog = page.get_by_role("dialog")
@@ -214,7 +216,7 @@ def test_what_needs_a_code_asks_for_it_and_goes_only_with_the_right_one(on: Fron
 # -- campaign map ----------------------------------------------------------------------------------------------------
 
 
-def test_the_map_has_a_cell_for_each_condition_told_by_sign_and_words(on: Front, desktop: BrowserContext) -> None:
+def test_the_map_has_a_cell_for_each_condition_with_sign_and_words(on: Front, desktop: BrowserContext) -> None:
     page = on.paired(desktop, "look", "map")
     expect(page.get_by_role("grid")).to_have_count(3)  # one for each compound
     expect(page.locator("[role=gridcell][data-n]")).to_have_count(165)

@@ -96,7 +96,7 @@ def test_a_role_that_looks_can_neither_stop_nor_hold(served: Whole, desktop: Bro
     assert page.get_by_role("button", name="HOLD").count() == 0
 
 
-def test_when_the_service_dies_the_page_says_so_within_two_seconds_and_shows_no_live_value(
+def test_when_the_service_dies_the_page_reports_it_within_two_seconds_and_shows_no_live_value(
     served: Whole, desktop: BrowserContext
 ) -> None:
     page = paired(served, desktop, "stop")

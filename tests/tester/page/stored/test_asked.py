@@ -78,7 +78,7 @@ def test_runs_are_those_of_tester_runs(runs: Path, run: Path) -> None:
         ({"from": "2100-01-01"}, 0), ({"to": "2000-01-01"}, 0), ({"person": "nobody"}, 0),
     ],
 )  # fmt: skip
-def test_runs_are_found_by_what_they_are(wanted: dict[str, str], found: int, runs: Path, run: Path) -> None:
+def test_runs_are_found_by_their_properties(wanted: dict[str, str], found: int, runs: Path, run: Path) -> None:
     assert len(ask(runs, "runs", **wanted)["runs"]) == found
 
 
@@ -125,7 +125,7 @@ def test_repeats_are_aligned_on_number_time_or_sliding(along: str, runs: Path, r
 
 
 @pytest.mark.parametrize("along", ["repeat", "time", "sliding"])
-def test_along_repeats_a_run_differs_from_its_twin_by_what_was_changed(along: str, own: Path) -> None:
+def test_along_repeats_a_run_differs_from_its_twin_by_the_change(along: str, own: Path) -> None:
     twin = Path(shutil.copytree(own, own.parent / "twin"))
     with sqlite3.connect(twin / "run.db") as store:
         store.execute("UPDATE repeat SET mu_resultant = mu_resultant * 1.1 WHERE condition = 1")

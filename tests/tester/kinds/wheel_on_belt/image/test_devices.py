@@ -133,7 +133,7 @@ def test_a_quick_stop_leaves_the_press_its_retraction(devices: Devices) -> None:
     assert devices.axes.wheel.goal is devices.axes.belt.goal is Goal.QUICK_STOP
 
 
-def test_disabled_drives_get_their_command(devices: Devices) -> None:
+def test_disabled_drives_get_the_goal_disabled(devices: Devices) -> None:
     devices.apply(Setpoints())
     assert all(drive.goal is Goal.DISABLED for drive in devices.drives)
     assert devices.axes.press.outputs == 0
@@ -160,7 +160,7 @@ def test_on_a_rig_the_readings_are_those_of_the_plant(mid_burst: Simulation) -> 
     assert r.hub_c == pytest.approx(plant.hub_c, abs=1.0)
 
 
-def test_on_a_rig_the_torques_of_press_and_belt_tell_of_load_and_friction(mid_burst: Simulation) -> None:
+def test_on_a_rig_the_torques_of_press_and_belt_show_load_and_friction(mid_burst: Simulation) -> None:
     r, plant = mid_burst.ctx.readings, mid_burst.world.plant
     screw = mid_burst.ctx.rig.axes.press.screw
     assert screw is not None

@@ -108,19 +108,19 @@ def test_a_part_beside_the_whole_is_refused() -> None:
         load(RigConfig, load_tree(text))
 
 
-def test_a_part_of_what_has_no_parts_is_refused() -> None:
+def test_a_part_of_an_undivided_cell_is_refused() -> None:
     text = packaged_text(RigConfig, "").replace(SINGLE, SINGLE + part("fx", LAUMAS, "load_cell", 5))
     with pytest.raises(InvalidSource, match="jacket is no device that may have several transmitters"):
         load(RigConfig, load_tree(text.replace("part_of: load_cell", "part_of: jacket")))
 
 
-def test_a_line_too_slow_for_the_skew_is_refused_with_what_to_do() -> None:
+def test_a_line_too_slow_for_the_skew_is_refused_with_a_remedy() -> None:
     (said,) = problems(THREE_LAUMAS, ["lines.load_cell.baud=9600"])
     assert "are read 51 ms apart" in said
     assert "interlocks.cell_skew is 30 ms: raise the baud, or give each a line of its own" in said
 
 
-def test_the_rig_reads_back_from_what_a_run_stores() -> None:
+def test_the_rig_reads_back_from_the_record_of_a_run() -> None:
     rig = joined(MIXED, ())
     again = load(RigConfig, load_tree(rig.text))
     assert again == rig
@@ -201,9 +201,7 @@ def test_a_transmitter_whose_bridge_is_broken_is_named(pressed: Simulation) -> N
 
 
 @pytest.mark.skipif(scan_is_compiled() == "yes", reason="a compiled method is not counted from outside")
-def test_who_is_to_blame_is_asked_where_something_trips_alone(
-    pressed: Simulation, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_the_cause_is_looked_up_only_at_a_trip(pressed: Simulation, monkeypatch: pytest.MonkeyPatch) -> None:
     asked: list[float] = []
 
     def blame(self: JoinedCell, now: float, limit_s: float) -> str:
@@ -234,7 +232,7 @@ def test_nothing_moves_while_a_transmitter_does_not_answer() -> None:
 # the page ------------------------------------------------------------------------------------------------------------
 
 
-def test_the_rig_file_of_the_how_to_page_is_taken_and_names_what_is_missing() -> None:
+def test_the_rig_file_of_the_how_to_page_is_accepted_and_names_missing_parts() -> None:
     page = Path(__file__).parents[5] / "docs" / "how-to" / "a-cell-of-several-transmitters.md"
     text = page.read_text(encoding="utf-8").split("```yaml\ndevices:\n")[1].split("```")[0]
     rig = load(RigConfig, load_tree(packaged_text(RigConfig, "").replace(SINGLE, text)))
@@ -277,7 +275,7 @@ def test_three_transmitters_on_one_line_run_with_an_ordinary_adapter(held: str) 
 
 
 @pytest.mark.parametrize(("held", "apart"), [("8 ms", 34.3), ("16 ms", 50.3)])
-def test_one_that_holds_replies_too_long_is_refused_with_skew_and_timer(held: str, apart: float) -> None:
+def test_an_adapter_that_holds_replies_too_long_is_refused_with_skew_and_timer(held: str, apart: float) -> None:
     run = Simulation(BRIEF, config=joined(THREE_LAUMAS, (*QUIET, f"sim.latency_timer={held}"))).to_the_end(100.0)
     failure = run.run.connector.failure
     assert "line load_cell is too slow for interlocks.cell_skew, 30.0 ms" in failure

@@ -92,7 +92,7 @@ def test_force_and_depth_are_inverse() -> None:
 
 @pytest.mark.parametrize("step_n", [30.0, -30.0])
 @pytest.mark.parametrize("force", [100.0, 200.0, 400.0])
-def test_a_step_of_30_n_on_a_held_load_is_told_within_200_ms(force: float, step_n: float) -> None:
+def test_a_step_of_30_n_on_a_held_load_is_detected_within_200_ms(force: float, step_n: float) -> None:
     for i in range(12):
         rubber = held(force, i / 12.0)
         rubber.step_n = step_n
@@ -101,7 +101,7 @@ def test_a_step_of_30_n_on_a_held_load_is_told_within_200_ms(force: float, step_
 
 @pytest.mark.parametrize("step_n", [30.0, -30.0])
 @pytest.mark.parametrize("share", [0.7, 1.0, 1.3])
-def test_a_step_of_30_n_while_loading_is_told_within_200_ms(share: float, step_n: float) -> None:
+def test_a_step_of_30_n_while_loading_is_detected_within_200_ms(share: float, step_n: float) -> None:
     for i in range(6):
         rubber = Rubber(stiffness=share * STIFFNESS, wanted_mm_s=2.0)
         while rubber.held_n != rubber.held_n or rubber.held_n < 200.0:
@@ -139,7 +139,7 @@ def test_friction_that_comes_shows_in_the_normal_force_and_is_no_step(friction_n
     assert rubber.told_after_s(0.3) == math.inf
 
 
-def test_a_contact_that_opens_says_nothing_of_the_next_one() -> None:
+def test_a_contact_that_opens_does_not_affect_the_next_one() -> None:
     rubber = held(200.0)
     rubber.observer.forget()
     rubber.step_n = 100.0

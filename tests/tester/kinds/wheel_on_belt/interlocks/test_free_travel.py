@@ -79,7 +79,7 @@ def test_a_gain_that_comes_between_two_ways_shows_in_the_next() -> None:
     assert travel.go(1.0) > 0.05
 
 
-def test_one_way_alone_tells_nothing_nor_does_a_short_one_nor_one_in_contact() -> None:
+def test_one_way_alone_a_short_way_and_a_way_in_contact_give_no_result() -> None:
     travel = Travel(0.5)
     assert travel.go(2.0) == 0.0
     travel.go(-UNDER_WAY_MM - 0.1 * (LEAST_READINGS - 2))

@@ -103,14 +103,14 @@ def test_beliefs_off_by_30_percent_do_not_add_up(rig: RigConfig, wheel: Wheel) -
 
 
 @pytest.mark.parametrize(("low", "told_c"), [(0.6, 50.0), (0.7, 90.0)])
-def test_a_sensor_that_reads_30_percent_low_is_told_long_before_the_hub_is_hot(
+def test_a_sensor_that_reads_30_percent_low_is_detected_long_before_the_hub_is_hot(
     rig: RigConfig, low: float, told_c: float
 ) -> None:
     most_k, hub_c = heat_up(rig, Wheel(), gain(low), told_k=rig.interlocks.unseen_heat_k)
     assert most_k > rig.interlocks.unseen_heat_k and hub_c < told_c
 
 
-def test_on_measured_beliefs_a_share_of_12_percent_tells_a_sensor_20_percent_low(rig: RigConfig) -> None:
+def test_with_measured_parameters_a_share_of_12_percent_detects_a_sensor_20_percent_low(rig: RigConfig) -> None:
     most_k, hub_c = heat_up(rig, Wheel(), gain(0.8), share=0.12, told_k=rig.interlocks.unseen_heat_k)
     assert most_k > rig.interlocks.unseen_heat_k and hub_c < 90.0
 
@@ -119,7 +119,7 @@ def test_beliefs_off_by_8_percent_do_not_add_up_where_the_share_is_12_percent(ri
     assert heat_up(rig, Wheel(1.08, 1.08, 0.92), gain(1.0), share=0.12)[0] < 0.25 * rig.interlocks.unseen_heat_k
 
 
-def test_a_sensor_late_by_20_s_hides_what_the_heater_gives_meanwhile(rig: RigConfig) -> None:
+def test_a_sensor_late_by_20_s_hides_the_heat_given_meanwhile(rig: RigConfig) -> None:
     past = [0.0] * round(20.0 / DT)
 
     def late(true_k: float) -> float:
@@ -136,7 +136,7 @@ def test_nothing_is_compared_across_a_gap_or_with_a_reading_that_is_none(rig: Ri
     assert balance.unseen_k == 0.0
 
 
-def test_what_a_person_did_to_the_wheel_is_forgotten(rig: RigConfig) -> None:
+def test_earlier_work_on_the_wheel_is_forgotten(rig: RigConfig) -> None:
     balance = balance_of(rig, 0.3)
     for i in range(20):
         balance.update(0.5 * i, 60.0, 100.0, 0.0)
@@ -183,7 +183,7 @@ def stands(rig: RigConfig, hub_k: float, percent: Callable[[float], float]) -> f
     return most_k
 
 
-def test_a_reading_that_stands_while_the_output_rises_adds_up(rig: RigConfig) -> None:
+def test_a_constant_reading_while_the_output_rises_adds_up(rig: RigConfig) -> None:
     assert stands(rig, 0.1, lambda at_s: 15.0 + 0.2 * at_s) > 5.0
 
 
@@ -202,7 +202,7 @@ def share(*ratios: float) -> float:
     return known_ratio(ratios, WIDEST, KNOWN).share(WIDEST, KNOWN)
 
 
-def test_without_a_history_the_widest_share_stands() -> None:
+def test_without_a_history_the_widest_share_is_used() -> None:
     assert NO_HISTORY.share(WIDEST, KNOWN) == WIDEST
     assert share(1.0, 1.0) == WIDEST
 
@@ -221,7 +221,7 @@ def test_a_ratio_below_one_leaves_the_least_share(ratio: float) -> None:
     assert share(*[ratio] * FIRST) == LEAST_SHARE
 
 
-def test_a_ratio_beyond_what_beliefs_explain_is_no_evidence() -> None:
+def test_a_ratio_beyond_the_range_of_the_parameters_is_no_evidence() -> None:
     assert share(1.5, 0.5, 1.0, 1.0) == WIDEST
     assert known_ratio((1.5, 1.0, 1.0, 0.5, 1.0), WIDEST, KNOWN).heatings == 3
 
@@ -255,7 +255,7 @@ def test_a_ratio_that_falls_tightens() -> None:
     assert share(*[1.08] * FIRST, *[1.0] * NEWEST) == pytest.approx(KNOWN)
 
 
-def test_what_is_known_is_said_with_what_the_row_tells_from() -> None:
+def test_known_heat_is_reported_with_the_threshold_of_the_row() -> None:
     assert NO_HISTORY.words(WIDEST, KNOWN) == "no history yet; a row tells from 30 %"
     assert KnownRatio(4, 1.02, 0.03).words(WIDEST, KNOWN) == (
         "known from 4 heatings, ratio 1.02, 0.03 apart; a row tells from 14 %"

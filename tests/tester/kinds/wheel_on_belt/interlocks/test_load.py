@@ -37,7 +37,7 @@ def test_a_known_contact_that_has_shrunk_and_is_seen_late_is_no_frozen_cell() ->
     assert late_mm + shrunk_mm + RUNOUT_MM < p.touch_margin_mm
 
 
-def test_what_a_dead_cell_lets_grow_does_not_harm() -> None:
+def test_the_load_growing_under_a_dead_cell_does_no_harm() -> None:
     stiff = STIFFER * load_rig("sim").loops.load.stiffness_n_per_mm
     hardest_mm = float((TOUCH_MARGIN_MM.hardest or "").removesuffix(" mm"))
     assert depth_mm(HARM_N, stiff) > hardest_mm

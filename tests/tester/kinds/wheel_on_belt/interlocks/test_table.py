@@ -48,7 +48,7 @@ SHARED = {"stale_can_s", "stale_can_scans", "stale_inputs_s", "speeds_old_s", "s
 
 
 @pytest.mark.parametrize("row", TABLE.rows, ids=lambda row: row.name)
-def test_a_row_declares_what_its_condition_compares_with(row: Interlock) -> None:
+def test_a_row_declares_the_parameters_of_its_condition(row: Interlock) -> None:
     used = {one.name for one in compared(row.watch.holds)}
     used |= {one.name for one in compared(row.applies)} if row.applies is not None else set()
     declared = {one.name for one in row.declared()} - {row.delay.name if row.delay is not None else ""}
@@ -62,7 +62,7 @@ def test_names_of_rows_and_parameters_stand_for_one_thing() -> None:
 
 
 @pytest.mark.parametrize("one", PARAMETERS, ids=lambda one: one.key)
-def test_a_parameter_says_what_it_is(one: Parameter) -> None:
+def test_a_parameter_has_a_description(one: Parameter) -> None:
     assert one.text
     assert inside(one.bounds, one.value)
 

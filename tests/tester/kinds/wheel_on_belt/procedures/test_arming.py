@@ -41,7 +41,7 @@ def test_arming_takes_a_few_seconds(ready: Simulation) -> None:
     assert ready.now < 6.0
 
 
-def test_what_was_shown_is_in_the_journal(ready: Simulation) -> None:
+def test_the_proofs_are_in_the_journal(ready: Simulation) -> None:
     assert ready.notes.texts("arming")[0] == ready.run.connector.shown
 
 
@@ -104,7 +104,7 @@ def test_an_open_safety_chain_refuses_to_arm_and_releases_the_drives() -> None:
         (lambda press: press.set_safety_chain(False), "safety chain"),
     ],
 )
-def test_what_happens_to_a_moving_axis_ends_the_arming_at_once(happens: Happens, reason: str) -> None:
+def test_an_event_at_a_moving_axis_ends_the_arming_at_once(happens: Happens, reason: str) -> None:
     simulation = Simulation()
     wheel, press = simulation.world.axes["wheel"], simulation.world.axes["press"]
     simulation.until(lambda s: s.run.connector.stage is Stage.PROVE and wheel.axis.value > 0.1)
@@ -140,7 +140,7 @@ def test_a_failed_connection_releases_the_drives_that_were_configured() -> None:
     assert not any(drive.connected for drive in simulation.run.engine.devices.drives)
 
 
-def test_proofs_can_be_left_out_where_a_drive_cannot_and_the_journal_says_so() -> None:
+def test_proofs_can_be_left_out_where_a_drive_cannot_and_the_journal_states_it() -> None:
     overrides = ("arming.watchdog_proof=false", "arming.bump_test=false", "arming.listen=0 s")
     simulation = connected(Simulation(SHORT, overrides, accept_risk="drives that cannot prove it"))
     assert "NOT shown: drives follow, wheel stops without our heartbeat" in simulation.run.connector.shown

@@ -171,7 +171,7 @@ def test_between_yawed_bursts_the_wheel_rolls_straight(bench: Bench) -> None:
 # -- unstable temperatures ----------------------------------------------------------------------------------------
 
 
-def test_what_warms_through_the_band_within_a_turn_cannot_be_held(bench: Bench) -> None:
+def test_a_contact_that_warms_through_the_band_within_a_turn_cannot_be_held(bench: Bench) -> None:
     bench.warming_k_s, bench.returning_k_s = 20.0, 0.5
     repeat = measure(bench)
     assert repeat.ending is Ending.CANNOT_HOLD and repeat.revolutions == 0
@@ -185,7 +185,7 @@ def test_the_rate_is_that_of_the_surface_and_the_band_would_hold_a_turn(bench: B
     assert "K/s; a band of" in repeat.detail
 
 
-def test_a_band_that_did_not_do_is_not_said_to_do(bench: Bench) -> None:
+def test_a_band_that_failed_is_not_suggested(bench: Bench) -> None:
     bench.warming_k_s, bench.returning_k_s = 6.0, 0.5
     repeat = measure(bench, replace(AT_40, temperature_band_k=0.5))
     assert repeat.ending is Ending.CANNOT_HOLD and repeat.holdable_band_k > 0.5
@@ -208,7 +208,7 @@ def test_a_temperature_that_does_not_come_back_ends_as_not_reached(bench: Bench)
     assert repeat.ending is Ending.NOT_REACHED and bench.now - began < 900.0 + 400.0
 
 
-def test_what_rolling_does_not_cool_is_tried_lifted(bench: Bench) -> None:
+def test_a_wheel_that_rolling_does_not_cool_is_lifted(bench: Bench) -> None:
     bench.surface_c = 41.0
     repeat = MeasureRepeat(AT_40, [], 1.0)
     bench.hold(repeat, 200.0, dt=0.05)
@@ -217,7 +217,7 @@ def test_what_rolling_does_not_cool_is_tried_lifted(bench: Bench) -> None:
     bench.until(repeat, lambda: repeat.phase is Phase.COUNT, at_most_s=20.0)
 
 
-def test_the_mean_of_what_counts_stays_near_the_setpoint_when_nothing_cools(bench: Bench) -> None:
+def test_the_mean_of_counted_samples_stays_near_the_setpoint_when_nothing_cools(bench: Bench) -> None:
     bench.warming_k_s = 1.0
     step = replace(AT_40, soak=replace(AT_40.soak, at_most_s=600.0))
     repeat = measure(bench, step, at_most_s=3000.0, dt=0.01)
@@ -269,7 +269,7 @@ def test_the_hot_rig_counts_nothing_warm_as_cold(warm_run: Simulation) -> None:
     assert fmean(surface) - fmean(row["surface_c"] for row in rows) < 1.2
 
 
-def test_what_is_counted_live_is_what_the_samples_say(noisy_run: Simulation) -> None:
+def test_the_live_count_agrees_with_the_samples(noisy_run: Simulation) -> None:
     import numpy as np
 
     table = np.array(noisy_run.notes.rows)
@@ -292,7 +292,7 @@ def test_yawed_samples_slip_by_the_vector(yawed_run: Simulation) -> None:
     assert all(row["sideslip_deg"] == pytest.approx(20.0, abs=0.1) for row in rows)
 
 
-def test_load_stands_only_on_a_turning_wheel_and_belt(yawed_run: Simulation) -> None:
+def test_load_is_applied_only_to_a_turning_wheel_and_belt(yawed_run: Simulation) -> None:
     loaded = [row for row in yawed_run.rows() if row["force_z_n"] > 20.0]
     assert min(row["wheel_speed_m_s"] for row in loaded) > 0.78
     assert min(row["belt_speed_m_s"] for row in loaded) > 0.48

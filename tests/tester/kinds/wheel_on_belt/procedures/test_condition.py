@@ -140,7 +140,7 @@ def test_a_soak_that_is_not_reached_ends_the_condition_without_a_repeat(bench: B
     assert results.begun == []
 
 
-def test_what_cannot_be_held_ends_the_condition_with_rate_and_band(bench: Bench) -> None:
+def test_a_temperature_that_cannot_be_held_ends_the_condition_with_rate_and_band(bench: Bench) -> None:
     bench.warming_k_s, bench.returning_k_s = 20.0, 2.0
     _, results = measure(bench)
     (end,) = results.ends
@@ -155,7 +155,7 @@ def test_a_drifted_zero_fails_the_run(bench: Bench) -> None:
     assert "drifted by 25.0 N" in condition.failed
 
 
-def test_what_one_repeat_has_learned_the_next_one_begins_with(bench: Bench) -> None:
+def test_each_repeat_begins_with_the_values_learned_by_the_one_before(bench: Bench) -> None:
     bench.warming_k_s, bench.returning_k_s = 6.0, 2.0
     _, results = measure(bench, replace(STEP, max_bursts=3, repeats=2))
     first, second = results.finished

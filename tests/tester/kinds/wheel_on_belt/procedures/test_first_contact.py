@@ -32,14 +32,14 @@ def contact(fault: str, compound: str = "1#", seed: int = 3) -> tuple[Stage, flo
 
 
 @pytest.mark.parametrize("fault", OFF_BY_MUCH)
-def test_what_turns_wrongly_is_told_by_name_at_20_n_or_less(fault: str) -> None:
+def test_an_axis_that_turns_wrongly_is_named_at_20_n_or_less(fault: str) -> None:
     stage, most_n, _ = contact(fault)
     assert OFF in stage.run.engine.executor.failed and not stage.trip
     assert most_n <= 20.0 and not stage.observer.found
 
 
 @pytest.mark.parametrize("fault", ["", "wheel diameter 97 %", "wheel diameter 103 %", "belt speed scale 103 %"])
-def test_what_is_within_the_sweep_is_not_told_and_costs_its_time_and_no_wear(fault: str) -> None:
+def test_an_error_within_the_sweep_is_not_reported_and_costs_time_but_no_wear(fault: str) -> None:
     stage, most_n, installing_s = contact(fault, "3#")
     assert stage.place[0] == 2 and not stage.run.engine.executor.failed and not stage.trip
     assert most_n <= 20.0

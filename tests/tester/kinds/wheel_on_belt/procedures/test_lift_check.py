@@ -59,7 +59,7 @@ def test_a_press_left_in_contact_does_not_keep_the_rig_from_coming_up() -> None:
     assert pressed(TOUCHING_MM).until(in_stage(Stage.READY), 15.0).run.connector.failure == ""
 
 
-def test_a_wheel_under_load_is_refused_whatever_the_press_says() -> None:
+def test_a_wheel_under_load_is_refused_whatever_the_press_reads() -> None:
     simulation = wrongly_zeroed()
     while not simulation.run.finished:
         simulation.tick()
@@ -68,7 +68,7 @@ def test_a_wheel_under_load_is_refused_whatever_the_press_says() -> None:
     assert "press's zero is wrong, the cell's zero is wrong, or the wheel touches" in simulation.run.reason
 
 
-def test_the_refusal_says_what_the_cell_and_the_press_show() -> None:
+def test_the_refusal_states_the_readings_of_the_cell_and_the_press() -> None:
     reason = wrongly_zeroed().to_the_end(20.0).run.reason
     assert reason.startswith("not armed: the load cell shows Fz ") and "the press shows 0.0 mm" in reason
 

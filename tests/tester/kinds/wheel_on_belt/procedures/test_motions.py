@@ -59,7 +59,7 @@ def test_a_sequence_steps_its_parts_one_after_the_other(bench: Bench) -> None:
     assert first.stepped[-1] < second.stepped[0]
 
 
-def test_a_move_that_overruns_its_time_fails_and_says_which(bench: Bench) -> None:
+def test_a_move_that_overruns_its_time_fails_and_is_named(bench: Bench) -> None:
     bench.follow = False
     with pytest.raises(MoveFailedError, match="switching the drives not done after 20 s"):
         bench.hold(Sequence(Power(True)), 21.0)
@@ -143,7 +143,7 @@ def test_load_that_leaves_its_band_starts_to_wait_again(turning: Bench) -> None:
     assert turning.run(load) >= 0.99
 
 
-def test_yaw_waits_for_the_angles_and_for_the_drives_to_say_so(bench: Bench) -> None:
+def test_yaw_waits_for_the_angles_and_for_the_drives_confirmation(bench: Bench) -> None:
     bench.follow = False
     yaw = Yaw({"sideslip": 20.0, "camber": 0.0})
     r = bench.ctx.readings
@@ -183,7 +183,7 @@ def test_a_question_and_its_answer_are_journalled(bench: Bench) -> None:
     assert "check wear" in asked and "yes (automatic)" in answered
 
 
-def test_an_open_guard_is_no_reason_to_wait_where_nobody_is_asked(bench: Bench) -> None:
+def test_an_open_guard_is_no_reason_to_wait_without_a_question(bench: Bench) -> None:
     bench.ctx.readings.guard_closed = False
     assert bench.scan(Ask("check wear"))
 
@@ -249,7 +249,7 @@ def test_a_zero_that_has_wandered_too_far_is_taken_only_where_it_ends_the_run(
 
 
 @pytest.mark.parametrize("zero_n", [21.0, -21.0])
-def test_a_reference_tare_beyond_what_an_unloaded_cell_shows_is_not_taken(turning: Bench, zero_n: float) -> None:
+def test_a_reference_tare_beyond_the_bound_of_an_unloaded_cell_is_not_taken(turning: Bench, zero_n: float) -> None:
     reference: list[float] = []
     turning.zero_n = zero_n
     taken = tare(reference)

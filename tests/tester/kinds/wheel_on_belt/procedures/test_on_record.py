@@ -30,13 +30,13 @@ def soaked(surface_c: float, *, model_c: float = 40.0, hub_c: float = 52.0, vali
     return soak_check(ctx, 3)
 
 
-def test_what_is_allowed_is_the_sum_of_three_beliefs() -> None:
+def test_the_allowance_is_the_sum_of_three_terms() -> None:
     assert allowed_k(52.0, 40.0) == pytest.approx(THERMOMETER_K + HUB_K + 12.0 * MODEL_SHARE)
     assert THERMOMETER_K == 1.0
 
 
 @pytest.mark.parametrize(("surface_c", "agrees"), [(40.0, True), (43.0, True), (44.0, False), (36.0, False)])
-def test_a_thermometer_agrees_within_what_is_allowed(surface_c: float, agrees: bool) -> None:
+def test_a_thermometer_agrees_within_the_allowance(surface_c: float, agrees: bool) -> None:
     found = soaked(surface_c)
     assert found is not None and (found.condition, found.off_k) == (3, surface_c - 40.0)
     assert found.agrees == agrees

@@ -97,7 +97,7 @@ def test_a_relay_that_welds_when_the_heat_ends_trips_before_a_person_is_asked() 
     assert trip is not None and trip.name == "heater stuck" and len(simulation.ctx.prompts.asked) == 1
 
 
-def test_a_hub_that_does_not_cool_is_told_with_the_question(bench: Bench) -> None:
+def test_a_hub_that_does_not_cool_is_reported_with_the_question(bench: Bench) -> None:
     bench.surface_c = 80.0
     ask = AskAtRest("check wear")
     bench.until(ask, lambda: bench.ctx.prompts.waiting is not None, at_most_s=4 * 3600.0, dt=1.0)
@@ -201,7 +201,7 @@ def test_closing_the_guard_starts_nothing_the_question_is_put_again(bench: Bench
     assert bench.scan(ask)
 
 
-def test_control_is_told_that_a_person_is_at_the_wheel_until_the_answer(bench: Bench) -> None:
+def test_control_knows_that_a_person_is_at_the_wheel_until_the_answer(bench: Bench) -> None:
     ask = AskAtRest("check wear")
     question = asked(bench, ask)
     bench.scan(ask)
@@ -230,7 +230,7 @@ def test_a_tare_hides_no_load_from_the_look_after_a_person(bench: Bench) -> None
     assert bench.scan(ask)
 
 
-def test_a_question_that_stands_is_not_put_again_after_a_hold(bench: Bench) -> None:
+def test_an_open_question_is_not_put_again_after_a_hold(bench: Bench) -> None:
     ask = AskAtRest("check wear")
     asked(bench, ask)
     ask.resume(bench.ctx)
@@ -238,7 +238,7 @@ def test_a_question_that_stands_is_not_put_again_after_a_hold(bench: Bench) -> N
     assert len(bench.ctx.prompts.asked) == 1
 
 
-def test_a_guard_opened_while_the_question_stands_trips_nothing() -> None:
+def test_a_guard_opened_while_the_question_is_open_trips_nothing() -> None:
     simulation = Simulation()
     simulation.ctx.prompts.automatic = False
     simulation.until(lambda s: s.run.waiting)

@@ -65,7 +65,7 @@ def test_the_samples_give_the_blocks_that_were_counted_without_the_run_in(bench:
     assert [one.started_s for one in again] == [one.started_s for one in made.counter.blocks]
 
 
-def test_a_run_in_that_warms_through_the_band_goes_on_in_further_pulses(bench: Bench) -> None:
+def test_a_run_in_that_warms_through_the_band_continues_in_further_pulses(bench: Bench) -> None:
     bench.warming_k_s, bench.returning_k_s = 1.0, 0.5
     made = measure(bench, 2)
     assert made.run_in.pulses > 1 and made.run_in.left_m <= 0.0

@@ -218,7 +218,7 @@ def test_a_belt_that_a_person_left_running_the_wrong_way_ends_the_run_before_the
         (condition_of(SHORT + "    sideslip: 20 deg\n"), "1#, 300 mm/s, 200 N, sideslip 20 deg, 25 degC"),
     ],
 )
-def test_a_title_says_what_a_step_does(step: Install | PreGrind | Rest | Heat | Cool | PromptStep, text: str) -> None:
+def test_a_title_describes_its_step(step: Install | PreGrind | Rest | Heat | Cool | PromptStep, text: str) -> None:
     assert step.title == text
 
 

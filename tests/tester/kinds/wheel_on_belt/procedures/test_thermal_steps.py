@@ -157,7 +157,7 @@ def test_a_rest_does_not_wait_for_a_colder_room_to_warm_up(bench: Bench) -> None
     assert bench.run(RestStep(rest(), ask_when_late=False), at_most_s=100.0, dt=0.1) < 62.0
 
 
-def test_a_rest_that_is_too_long_goes_on_with_a_warning(bench: Bench) -> None:
+def test_a_rest_that_is_too_long_continues_with_a_warning(bench: Bench) -> None:
     bench.surface_c = 40.0
     step = RestStep(rest(at_most_s=120.0), ask_when_late=False)
     assert bench.run(step, at_most_s=200.0, dt=0.1) == pytest.approx(120.0, abs=1.0)
@@ -256,15 +256,15 @@ def heats(bench: Bench, hub_c: float, put_j: float, shown_j: float, *, forget: b
     return bench.notes.texts("heat")
 
 
-def test_the_heat_of_this_heating_is_told_and_none_from_before(bench: Bench) -> None:
+def test_only_the_heat_of_this_heating_is_reported(bench: Bench) -> None:
     told = "heat balance: 22.0 kJ put in, 1.10 of what the temperatures show"
     assert heats(bench, 45.0, 22e3, 20e3) == [told]
 
 
 @pytest.mark.parametrize(("hub_c", "shown_j"), [(40.0, 20e3), (45.0, 9e3)])
-def test_a_heating_of_little_heat_or_rise_says_nothing(bench: Bench, hub_c: float, shown_j: float) -> None:
+def test_a_heating_of_little_heat_or_rise_gives_no_result(bench: Bench, hub_c: float, shown_j: float) -> None:
     assert heats(bench, hub_c, 22e3, shown_j) == []
 
 
-def test_a_balance_that_began_anew_meanwhile_says_nothing(bench: Bench) -> None:
+def test_a_balance_restarted_meanwhile_gives_no_result(bench: Bench) -> None:
     assert heats(bench, 45.0, 22e3, 20e3, forget=True) == []

@@ -58,7 +58,7 @@ def test_the_first_roll_check_is_the_wheel_s_reference(rolled: Bench) -> None:
     assert number(checks(rolled)[0], "diameter_mm") == pytest.approx(89.8)
 
 
-def test_a_press_that_stands_deeper_tells_the_loss_of_diameter(rolled: Bench) -> None:
+def test_a_deeper_press_position_gives_the_loss_of_diameter(rolled: Bench) -> None:
     rolled.pressed_mm += 0.1
     roll(rolled)
     assert rolled.ctx.wheel.loss_mm == pytest.approx(0.4)
@@ -244,6 +244,6 @@ def test_a_condition_without_a_check_does_not_take_that_of_the_one_before() -> N
     assert between(plan_of(text))[0] == [(1, 0, 0), (1, 0, 1), (1, 1, 0)]
 
 
-def test_a_person_is_asked_after_the_last_condition_too() -> None:
+def test_a_person_is_also_asked_after_the_last_condition() -> None:
     _, bench = between(plan_of(ASKED))
     assert steps_of(bench) == ["install", "heat"] + ["check", "heat", "1#,"] * 3 + ["check"]

@@ -53,7 +53,7 @@ class Rubber:
 
 @pytest.mark.parametrize("rate", [0.08, 0.3, 0.6])
 @pytest.mark.parametrize("share", [0.0, 0.03])
-def test_wear_and_dent_are_told_apart(rate: float, share: float) -> None:
+def test_wear_and_dent_are_separated(rate: float, share: float) -> None:
     rubber = Rubber(rate, share)
     rubber.live(30)
     found = rubber.estimate
@@ -144,7 +144,7 @@ def wheel(loss_mm: float, seen_mm: float, variance_mm2: float = 0.0036) -> Wheel
     return made
 
 
-def test_the_believed_loss_stands_while_touches_agree_with_it() -> None:
+def test_the_estimated_loss_is_kept_while_touches_agree_with_it() -> None:
     agreed = wheel(0.5, 0.6, 0.0025)
     assert agreed.follow() == 0.0 and agreed.loss_mm == 0.5 and agreed.rate_mm3_per_n_m == 0.0
     assert agreed.u_mm == pytest.approx(hypot(0.05, 0.1))

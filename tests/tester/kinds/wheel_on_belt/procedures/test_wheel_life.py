@@ -40,7 +40,7 @@ def test_growth_is_unsure_by_its_stated_uncertainty_and_by_the_rubber_that_is_go
     )
 
 
-def test_a_wheel_whose_surface_is_not_known_keeps_what_it_had_gained() -> None:
+def test_a_wheel_with_an_unknown_surface_keeps_its_thermal_growth() -> None:
     wheel = WheelLife(installed_mm=90.0)
     warm_mm = shown(wheel, 63.0, 43.0).diameter_mm
     assert shown(wheel, 63.0, 300.0, surface_valid=False).diameter_mm == warm_mm

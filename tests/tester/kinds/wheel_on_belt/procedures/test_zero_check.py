@@ -41,7 +41,7 @@ def test_it_is_due_after_ten_minutes_of_contact_without_a_break(bench: Bench) ->
     assert is_due(bench.ctx)
 
 
-def test_it_is_due_where_the_press_is_deeper_than_the_load_needs_by_half_of_what_is_allowed(bench: Bench) -> None:
+def test_it_is_due_where_the_press_is_too_deep_by_half_of_the_allowance(bench: Bench) -> None:
     ctx = bench.ctx
     p, needed_mm = ctx.rig.interlocks, depth_mm(200.0, ctx.rig.loops.load.stiffness_n_per_mm)
     allowed_mm = (p.depth_factor - 1.0) * needed_mm + p.depth_margin_mm
@@ -102,7 +102,7 @@ def test_a_grind_whose_touches_do_not_know_the_rate_is_broken_off_early(bench: B
     assert bench.notes.texts("tare") and step.grind.done_s == pytest.approx(60.0, abs=0.2)
 
 
-def test_what_is_lifted_has_no_age_of_contact(bench: Bench) -> None:
+def test_a_lifted_wheel_has_no_age_of_contact(bench: Bench) -> None:
     bench.ctx.gates.touched_s = float("inf")
     assert contact_s(bench.ctx) == 0.0
 

@@ -191,7 +191,7 @@ def test_a_person_at_a_hot_wheel_costs_cooling_and_warming_again() -> None:
     assert hot("  wear_check: prompt\n").rig_seconds > hot("").rig_seconds + 25 * 60
 
 
-def test_a_prompt_costs_what_a_wear_check_does() -> None:
+def test_a_prompt_costs_the_same_as_a_wear_check() -> None:
     text = PREPARED.replace("[40 degC, 25 degC]", "85 degC")
     prompts = planned(text + "steps:\n  - {prompt: look, every: condition}\n")[1]
     assert prompts.rig_seconds == pytest.approx(hot("  wear_check: prompt\n").rig_seconds)

@@ -48,7 +48,7 @@ def test_three_replicates_of_table_2_are_495_conditions() -> None:
     assert len({step.row for step in plan.conditions() if not step.reference}) == 165
 
 
-def test_a_condition_is_held_and_measured_as_the_recipe_says() -> None:
+def test_a_condition_is_held_and_measured_as_the_recipe_states() -> None:
     step = next(iter(plan_of(SMALL).conditions()))
     assert held_by(step.setpoint)._asdict() == {
         "compound": "1#",
@@ -64,7 +64,7 @@ def test_a_condition_is_held_and_measured_as_the_recipe_says() -> None:
     assert (step.temperature_band_k, step.soak) == (2.0, Soak(1.0, 60.0, 1800.0))
 
 
-def test_a_grid_may_say_otherwise_than_measure() -> None:
+def test_a_grid_may_override_measure() -> None:
     own = "name: load\n    repeats: 7\n    window: 60 s\n    soak: {within: 0.5 K, for: 2 min}"
     step = next(iter(plan_of(with_line("name: load", own)).conditions()))
     assert (step.repeats, step.window) == (7, Window(None, 60.0, 180.0))
@@ -97,7 +97,7 @@ def test_rows_number_the_recipes_order_not_the_measured_one() -> None:
     assert [step.row for step in plan_of(SMALL).conditions()] == [2, 4, 1, 3]
 
 
-def test_rows_go_on_through_the_specimens() -> None:
+def test_rows_continue_through_the_specimens() -> None:
     plan = plan_of(with_line('- compound: "1#"', '- compound: "1#"\n  - compound: "2#"'))
     assert sorted(step.row for step in plan.conditions()) == list(range(1, 9))
 
@@ -222,7 +222,7 @@ def test_every_step_knows_its_place() -> None:
     assert [step.condition for step in plan.conditions()] == list(range(1, 166 + plan.references))
 
 
-def test_pre_grind_and_rest_are_as_the_recipe_says() -> None:
+def test_pre_grind_and_rest_follow_the_recipe() -> None:
     steps = plan_of(PREPARED).steps
     assert steps[1] == PreGrind(1, 0.8, 0.6, 200.0, 240.0)
     assert steps[2] == Rest(2, 1200.0, 25.0, 2.0, 5400.0)
@@ -236,7 +236,7 @@ def test_the_next_specimen_begins_with_a_cool_hub_and_rubber_at_ambient() -> Non
     assert second[2] == Rest(11, 0.0, 23.0, 5.0, 5400.0)
 
 
-def test_what_a_person_does_is_asked_as_often_as_the_recipe_says() -> None:
+def test_work_of_a_person_is_requested_as_often_as_the_recipe_states() -> None:
     steps = "steps:\n  - {prompt: clean debris, every: condition}\n  - {prompt: look, every: temperature}\n"
     plan = plan_of(SMALL + steps + "  - {prompt: measure the diameter, every: wheel}\n")
     asked = [step.text if isinstance(step, PromptStep) else step.kind for step in plan.steps]

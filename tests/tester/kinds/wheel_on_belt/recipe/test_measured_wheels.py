@@ -29,7 +29,7 @@ def test_a_diameter_within_its_uncertainty_is_no_doubt() -> None:
 
 
 @pytest.mark.parametrize("sign", [-1.0, 1.0])
-def test_a_diameter_beyond_it_is_a_doubt_with_what_it_does_to_the_speeds(sign: float) -> None:
+def test_a_diameter_beyond_it_is_a_doubt_with_its_effect_on_the_speeds(sign: float) -> None:
     (said,) = doubts(text(f"diameter: {NEW_MM + sign * 0.9:.2f} mm"))
     assert "every speed of the wheel is off by 1.0 %" in said
     assert f'expected geometry.wheel_diameter of rig "{RIG.name}": {NEW_MM:g} mm, within {INSTALLED_MM:g} mm' in said
@@ -41,7 +41,7 @@ def test_a_wheel_that_its_first_contact_would_refuse_is_an_error() -> None:
         doubts(text(f"diameter: {NEW_MM - off_mm - 0.1:.2f} mm"))
 
 
-def test_of_replicates_the_one_that_is_off_is_named() -> None:
+def test_the_outlier_among_replicates_is_named() -> None:
     recipe = text(f"diameter: [{NEW_MM:g} mm, {NEW_MM + 1.0:g} mm]") + "replicates: 2\n"
     (said,) = load_checked(recipe, RIG, PART, "r.yaml").doubts
     assert f"{NEW_MM + 1.0:g} mm" in said.message

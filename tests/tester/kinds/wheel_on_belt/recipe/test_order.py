@@ -78,7 +78,7 @@ def test_the_steps_of_a_plan_and_its_end_are_its_rig_time() -> None:
     assert figures.rig_seconds == pytest.approx(sum(one.seconds for one in figures.steps))
 
 
-def test_the_range_holds_the_estimate_and_widens_with_what_waits() -> None:
+def test_the_range_contains_the_estimate_and_widens_with_waiting_steps() -> None:
     _, figures = planned(at("40 degC"))
     waits = sum(one.waiting_s for one in figures.steps)
     low, high = figures.rig_seconds - figures.rig_seconds_low, figures.rig_seconds_high - figures.rig_seconds

@@ -46,7 +46,7 @@ def test_a_recipe_in_both_directions_is_valid() -> None:
     assert condition(text()).both_directions and not condition(text(measure="")).both_directions
 
 
-def test_a_grid_says_it_for_itself() -> None:
+def test_a_grid_may_state_it() -> None:
     assert condition(text(measure="", grid=BOTH)).both_directions
     assert not condition(text(grid=", both_directions: false")).both_directions
 
@@ -67,7 +67,7 @@ def test_a_grid_says_it_for_itself() -> None:
          "reversed by both_directions, at a wheel speed of 0.65 m/s leaves less than"),
     ],
 )  # fmt: skip
-def test_what_is_not_the_same_condition_the_other_way_is_refused(recipe: str, told: str) -> None:
+def test_a_condition_that_differs_the_other_way_is_refused(recipe: str, told: str) -> None:
     found = problems(recipe)
     assert any(told in one for one in found), found
 
@@ -99,14 +99,14 @@ def test_a_precision_takes_as_many_repeats_in_both_directions() -> None:
 
 
 @pytest.mark.parametrize("slip", ["300 mm/s", "-300 mm/s"])
-def test_the_plan_says_pairs_and_how_fast_the_belt_runs(slip: str) -> None:
+def test_the_plan_states_pairs_and_belt_speeds(slip: str) -> None:
     plan = expand(read(text(slip, grid=", run_in_after_reversal: 5 m")), rig())
     said = "\n".join(lines(plan, estimate(plan, WheelEstimator(rig())), PART))
     assert "3 pairs x 30 rev" in said and "run-in 5 m" in said and "1, 6 repeats" in said
     assert "both directions   1 conditions: repeats alternate + - - +, the belt at up to 1.1 m/s" in said
 
 
-def test_a_plan_s_json_says_it() -> None:
+def test_a_plan_s_json_states_it() -> None:
     plan = expand(read(text()), rig())
     found = json.loads("".join(json_chunks(plan, estimate(plan, WheelEstimator(rig())), PART)))
     assert [one["both_directions"] for one in found["steps"] if one["kind"] == "condition"] == [True]

@@ -49,7 +49,7 @@ def test_references_are_one_condition_with_rows_of_their_own() -> None:
     assert {one.grid for one in found} == {"reference"} and len({one.setpoint for one in found}) == 1
 
 
-def test_its_axes_are_what_is_given_and_the_defaults() -> None:
+def test_its_axes_are_the_given_values_and_the_defaults() -> None:
     first = next(iter(plan_of("reference: {every: 2, load: 150 N, repeats: 2}\n").conditions()))
     held = {axis: first.setpoint.number(axis) for axis in ("load", "slip_velocity", "temperature", "wheel_speed")}
     assert held == {"load": 150.0, "slip_velocity": 0.3, "temperature": 40.0, "wheel_speed": 0.8}
@@ -80,13 +80,13 @@ def test_a_plan_with_references_is_one_part() -> None:
     assert len(split(plan_of(EVERY_2 + "replicates: 3\n"))) == 1
 
 
-def test_the_plan_says_what_it_is_held_at_and_where() -> None:
+def test_the_plan_states_its_setpoints_and_places() -> None:
     told = "\n".join(lines(plan_of(EVERY_2), PART.estimate(plan_of(EVERY_2), rig()), PART))
     assert "references        3 of 300 mm/s, 200 N, 40 degC," in told
     assert "after every 2 conditions, on whichever wheel is on" in told
 
 
-def test_fewer_repeats_of_a_reference_do_not_change_what_tells_compounds_apart() -> None:
+def test_fewer_repeats_of_a_reference_do_not_change_the_separation_of_compounds() -> None:
     def told(extra: str) -> str:
         plan = plan_of(extra)
         return next(one for one in lines(plan, PART.estimate(plan, rig()), PART) if one.startswith("two compounds"))
@@ -127,7 +127,7 @@ def mounted(number: int, specimen: int, last: int) -> Mounted:
     return Mounted(number, specimen, 1, 89.5, 100.0, ground=True, last_condition=last)
 
 
-def test_all_that_comes_after_what_is_left_first_is_left_as_it_was() -> None:
+def test_the_rest_after_its_first_condition_is_unchanged() -> None:
     plan = plan_of(RESERVED, PREPARED)
     stand = Stand(frozenset({1, 2}), frozenset({1, 2, 3}), (mounted(1, 2, 1), mounted(2, 1, 3)))
     left = remaining(plan, stand)
@@ -141,7 +141,7 @@ def test_all_that_comes_after_what_is_left_first_is_left_as_it_was() -> None:
     ]
 
 
-def test_it_goes_on_with_the_reserved_wheel_where_that_was_on() -> None:
+def test_it_resumes_with_the_reserved_wheel_where_that_was_mounted() -> None:
     plan = plan_of(RESERVED, PREPARED)
     stand = Stand(frozenset({1, 2, 3, 4}), frozenset({1, 2, 3, 4, 5}), (mounted(1, 2, 5), mounted(2, 1, 4)))
     first = next(step for step in remaining(plan, stand).steps if isinstance(step, Install))
@@ -166,12 +166,12 @@ def test_it_goes_on_with_the_reserved_wheel_where_that_was_on() -> None:
         ('reference: {every: 5, compound: "2#"}\n', "expected wheel with it"),
     ],
 )
-def test_what_makes_no_sense_is_refused(extra: str, said: str) -> None:
+def test_nonsense_is_refused(extra: str, said: str) -> None:
     found = problems(extra)
     assert found and any(said in one for one in found), found
 
 
-def test_a_default_that_the_rig_cannot_hold_is_refused_too() -> None:
+def test_a_default_that_the_rig_cannot_hold_is_also_refused() -> None:
     found = [one.message for one in check(SMALL + EVERY_2, rig("limits.load=150 N"), PART, "r.yaml")]
     assert sum("load: 200 N is more than the rig allows" in one for one in found) == 2
 

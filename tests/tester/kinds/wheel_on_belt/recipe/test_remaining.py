@@ -31,7 +31,7 @@ def test_nothing_done_leaves_the_whole_plan() -> None:
     assert remaining(plan_of(), Stand()) == plan_of()
 
 
-def test_a_condition_goes_on_after_heating_with_the_wheel_as_it_was() -> None:
+def test_a_condition_resumes_after_heating_with_the_same_wheel() -> None:
     left = remaining(plan_of(), Stand(frozenset({1}), frozenset({1, 2}), (worn(last=2),)))
     assert kinds(left)[:3] == [Install, Heat, WheelCondition] and numbers(left) == [2, 3, 4]
     first = left.steps[0]
@@ -39,7 +39,7 @@ def test_a_condition_goes_on_after_heating_with_the_wheel_as_it_was() -> None:
     assert (first.worn.diameter_mm, first.worn.sliding_m) == (89.5, 700.0)
 
 
-def test_heating_is_to_the_condition_that_goes_on() -> None:
+def test_heating_is_to_the_resumed_condition() -> None:
     left = remaining(plan_of(), Stand(frozenset({1, 2}), frozenset({1, 2, 3}), (worn(last=3),)))
     assert [step.temperature_c for step in left.steps if isinstance(step, Heat)] == [40.0]
 
@@ -66,7 +66,7 @@ def test_the_next_specimen_gets_its_new_wheel() -> None:
     assert isinstance(left.steps[1], Install) and left.steps[1].worn is None
 
 
-def test_specimens_measured_side_by_side_go_on_each_at_its_place() -> None:
+def test_specimens_measured_side_by_side_resume_each_at_its_place() -> None:
     stand = Stand(frozenset({1, 5, 6}), frozenset({1, 2, 5, 6}), (worn(last=2), worn(2, 2, last=6)))
     left = remaining(plan_of(TWO), stand)
     assert numbers(left) == [2, 3, 4, 7, 8]

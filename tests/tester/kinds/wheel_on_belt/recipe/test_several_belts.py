@@ -91,7 +91,7 @@ def test_parts_on_rigs_of_their_own_begin_with_their_belt() -> None:
 
 
 @pytest.mark.parametrize(("ended", "left"), [(1, "Aiha" + "cBhbb"), (2, "Bihbb"), (3, "Bihb")])
-def test_what_is_left_begins_with_the_belt_of_its_first_condition(ended: int, left: str) -> None:
+def test_the_rest_begins_with_the_belt_of_its_first_condition(ended: int, left: str) -> None:
     done = frozenset(range(1, ended + 1))
     found = remaining(plan_of(), Stand(done, done, (Mounted(1, 1, 1, 89.5, 700.0, True, ended),)))
     assert outline(found.steps) == left

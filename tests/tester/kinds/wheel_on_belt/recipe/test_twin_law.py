@@ -75,7 +75,7 @@ def test_a_name_close_to_a_known_one_is_asked_about(folder: Path, capsys: pytest
         ("{form: powre, figures: {a: 1}}", "form"),
     ],
 )
-def test_what_is_wrong_with_a_law_is_refused_at_its_line(
+def test_mistakes_in_a_law_are_refused_at_their_line(
     folder: Path, capsys: pytest.CaptureFixture[str], law: str, told: str
 ) -> None:
     described(folder, f"name: own\nlaw: {law}\n")

@@ -96,7 +96,7 @@ def test_without_a_history_the_heat_balance_takes_the_file_s_share(simulation: S
     assert simulation.ctx.known() == ["heat balance: no history yet; a row tells from 30 %"]
 
 
-def test_what_earlier_runs_have_shown_tightens_the_heat_balance() -> None:
+def test_results_of_earlier_runs_tighten_the_heat_balance() -> None:
     config = rig()
     ports, _, attendant = simulated_ports(config, 0, None)
     prompts = Prompts(automatic=True)

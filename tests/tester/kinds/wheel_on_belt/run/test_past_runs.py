@@ -73,7 +73,7 @@ def test_a_rig_with_other_beliefs_or_another_twin_starts_anew(tmp_path: Path, ri
     assert known_heat(tmp_path, load_rig("sim", [other])) == NO_HISTORY
 
 
-def test_what_has_nothing_to_do_with_heat_leaves_the_history(rig: RigConfig) -> None:
+def test_keys_unrelated_to_heat_keep_the_history(rig: RigConfig) -> None:
     assert beliefs_of(load_rig("sim", ["limits.load=430 N"])) == beliefs_of(rig)
 
 

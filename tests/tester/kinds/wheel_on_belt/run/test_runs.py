@@ -59,7 +59,7 @@ def test_a_rig_of_its_own_has_nothing_to_cool() -> None:
     assert all(isinstance(part.plan.steps[0], Install) for part in parts)
 
 
-def test_a_part_knows_what_its_own_wheels_are_predicted_to_lose() -> None:
+def test_a_part_has_the_predicted_loss_of_its_own_wheels() -> None:
     plan, parts = parts_of(THREE)
     assert [wear for part in parts for wear in part.plan.wear] == list(plan.wear)
     assert [len(part.plan.wear) for part in parts] == [1, 1, 1]

@@ -89,7 +89,7 @@ def test_another_wheel_begins_a_count_of_its_own() -> None:
     assert [one.turns for one in watch.segments] == [500.0, 7.0]
 
 
-def test_an_error_while_the_wheel_stands_has_no_angle() -> None:
+def test_an_error_while_the_wheel_is_at_rest_has_no_angle() -> None:
     device = Counting()
     watch = SlipRingWatch(device)  # type: ignore[arg-type]
     watch.look(3.0, 0.0)
@@ -123,7 +123,7 @@ def ring_run(folder: Path, started: str, errors: int) -> None:
     writer.close()
 
 
-def test_the_command_tells_angle_speed_and_trend(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_prints_angle_speed_and_trend(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.delenv("TESTER_CATALOGUE", raising=False)
     ring_run(tmp_path / "runs" / "first", "2026-01-01T08:00:00.000Z", 10)

@@ -18,7 +18,7 @@ def test_without_a_run_nothing_is_claimed() -> None:
     assert wheel_check(None).ok is None and zero_check(None, NOW).ok is None
 
 
-def test_wheel_and_zero_of_the_last_run_are_said_with_wear_and_age() -> None:
+def test_wheel_and_zero_of_the_last_run_are_shown_with_wear_and_age() -> None:
     assert wheel_check(LEFT).text.startswith("last 1#, 89.40 mm, 0.60 mm worn off in 812 m")
     assert zero_check(LEFT, NOW).text.startswith("2 h old")
 
@@ -28,7 +28,7 @@ def test_without_a_run_a_new_wheel_is_named() -> None:
 
 
 @pytest.mark.parametrize(("seconds", "words"), [(0.0, "0 min"), (7100.0, "118 min"), (7300.0, "2 h"), (2e5, "2 d")])
-def test_an_age_is_said_in_a_unit_that_fits(seconds: float, words: str) -> None:
+def test_an_age_is_shown_in_a_suitable_unit(seconds: float, words: str) -> None:
     assert age_words(seconds) == words
 
 
@@ -41,6 +41,6 @@ def test_an_age_is_said_in_a_unit_that_fits(seconds: float, words: str) -> None:
                                     " observer.thermal, or check the sensors"),
     ],
 )  # fmt: skip
-def test_what_is_known_of_the_heat_balance_is_told(heat: KnownRatio, ok: bool | None, words: str) -> None:
+def test_the_state_of_the_heat_balance_is_shown(heat: KnownRatio, ok: bool | None, words: str) -> None:
     found = heat_check(heat, load_rig("sim"))
     assert (found.name, found.ok, found.text) == ("heat balance", ok, words)

@@ -20,14 +20,14 @@ def test_a_simulated_rig_is_gone_with_its_service() -> None:
     assert left_alone(load_rig("sim")) == "The simulated rig was part of the service and is gone with it."
 
 
-def test_the_first_watchdog_of_each_drive_and_the_jackets_lease_are_told(rig: RigConfig) -> None:
+def test_the_first_watchdog_of_each_drive_and_the_jackets_lease_are_shown(rig: RigConfig) -> None:
     axes = replace(rig.axes, belt=replace(rig.axes.belt, consumer_heartbeat_s=0.3, rpdo_deadline_s=0.0))
     text = left_alone(replace(rig, axes=axes))
     assert "(wheel, press, sideslip, camber: 200 ms; belt: 300 ms)" in text
     assert "stops heating by itself (2 s without a command)" in text
 
 
-def test_a_jacket_without_a_watchdog_is_told(rig: RigConfig, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_jacket_without_a_watchdog_is_reported(rig: RigConfig, monkeypatch: pytest.MonkeyPatch) -> None:
     class Leaseless:
         writes = frozenset[str]()
 
