@@ -150,7 +150,7 @@ def test_with_a_certificate_nothing_is_answered_in_the_clear(tmp_path: Path) -> 
 
 
 @needs_second
-def test_over_tls_another_origin_is_refused_too(tmp_path: Path) -> None:
+def test_over_tls_another_origin_is_also_refused(tmp_path: Path) -> None:
     async def story(stage: PageStage, authority: Authority) -> None:
         for origin in (f"http://{LAN}:{stage.port}", "https://evil.example", None):
             with pytest.raises(Exception, match=r"403"):

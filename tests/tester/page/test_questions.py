@@ -123,7 +123,7 @@ def test_the_newest_run_is_prepared_by_the_reading_process_when_the_page_starts(
     assert asked == [("prepare", {"run": "2024-02-03-run"})]
 
 
-def test_pages_see_who_is_paired(tmp_path: Path) -> None:
+def test_pages_see_paired_devices(tmp_path: Path) -> None:
     async def story(stage: PageStage) -> None:
         await stage.paired("control", "Ben's tablet")
         page = await stage.paired("look")

@@ -45,7 +45,7 @@ def test_over_every_combination_of_known_checks_only_the_whole_set_starts() -> N
         assert isinstance(found, StartItem) or (isinstance(found, Wait) and len(found.reason) > 20)
 
 
-def test_a_further_check_that_fails_counts_too() -> None:
+def test_a_further_check_that_fails_also_counts() -> None:
     queue = queue_of(*GOING)
     whole = evidence_for(queue)
     more = Evidence(1, queue.revision, (*whole.checks, Check("extractor", None, "")))

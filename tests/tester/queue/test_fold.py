@@ -46,31 +46,31 @@ def numbers(queue: Queue) -> list[int]:
         (End.SHORT, True, False),
     ],
 )
-def test_the_queue_goes_on_after_done_and_short_only(end: End, stands: bool, goes: bool) -> None:
+def test_the_queue_continues_after_done_and_short_only(end: End, stands: bool, goes: bool) -> None:
     queue = queue_of(*RUNS, ItemEnded(1, end, "why", "run-1", stands))
     assert queue.going is goes
     assert bool(queue.why) is not goes
 
 
-def test_an_item_may_let_the_queue_go_on_after_a_failure() -> None:
+def test_an_item_may_let_the_queue_continue_after_a_failure() -> None:
     events = (ItemAdded(item(1, after=(End.FAILED,))), *RUNS[1:])
     assert queue_of(*events, ItemEnded(1, End.FAILED, "", "run-1")).going
     assert not queue_of(*events, ItemEnded(1, End.DONE, "", "run-1")).going
 
 
 @pytest.mark.parametrize("end", [End.TRIPPED, End.STOPPED])
-def test_no_item_may_go_on_after_a_trip_or_a_stop(end: End) -> None:
+def test_no_item_may_follow_a_trip_or_a_stop(end: End) -> None:
     with pytest.raises(QueueError, match=f"after {end} the queue always stands"):
         queue_of(ItemAdded(item(1, after=(End.DONE, end))))
 
 
-def test_a_skipped_run_lets_the_queue_go_on_after_its_stop() -> None:
+def test_a_skipped_run_lets_the_queue_continue_after_its_stop() -> None:
     queue = queue_of(*RUNS, ItemSkipped(1, "anna"), ItemEnded(1, End.STOPPED, "skipped by anna", "run-1"))
     assert queue.going
 
 
 @pytest.mark.parametrize(("end", "stands"), [(End.TRIPPED, False), (End.STOPPED, True)])
-def test_a_skipped_run_that_ends_badly_lets_nothing_go_on(end: End, stands: bool) -> None:
+def test_a_skipped_run_that_ends_badly_stops_the_queue(end: End, stands: bool) -> None:
     assert not queue_of(*RUNS, ItemSkipped(1, "anna"), ItemEnded(1, end, "it tripped", "run-1", stands)).going
 
 
@@ -107,7 +107,7 @@ def test_an_impossible_change_is_refused_with_its_reason(event: QueueEvent, reas
         queue_of(event, start=queue_of(*RUNS))
 
 
-def test_after_the_last_item_the_queue_stands_and_an_added_item_does_not_begin() -> None:
+def test_after_the_last_item_the_queue_is_stopped_and_an_added_item_does_not_begin() -> None:
     queue = queue_of(ItemAdded(item(1)), *RUNS[2:], ItemEnded(1, End.DONE, "", "run-1"), ItemAdded(item(2)))
     assert (queue.going, queue.why) == (False, "it came to its end")
 
@@ -117,7 +117,7 @@ def test_a_queue_in_which_no_item_waits_is_not_started() -> None:
         queue_of(*TWO, ItemSkipped(1, "anna"), ItemSkipped(2, "anna"), QueueStarted("anna"))
 
 
-def test_nothing_is_taken_while_the_queue_stands() -> None:
+def test_nothing_is_taken_while_the_queue_is_stopped() -> None:
     with pytest.raises(QueueError, match="the queue stands: not started yet"):
         queue_of(*TWO, ItemTaken(1))
 
@@ -195,7 +195,7 @@ def test_copies_beyond_the_queue_are_refused_together() -> None:
         queue_of(ItemAdded(item(MOST_WAITING), copies=2), start=full)
 
 
-def test_a_time_limit_ends_when_the_queue_stands() -> None:
+def test_a_time_limit_ends_when_the_queue_stops() -> None:
     going = queue_of(*TWO, QueueStarted("anna", UTC))
     assert going.until_utc == UTC
     stands = queue_of(QueueStood("enough"), start=going)

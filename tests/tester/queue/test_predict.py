@@ -37,7 +37,7 @@ def test_a_skewed_item_has_the_range_of_its_estimate_around_a_later_mean() -> No
     assert one.end_s == pytest.approx(1030.0)
 
 
-def test_half_ranges_add_up_as_squares_but_for_what_items_have_in_common() -> None:
+def test_half_ranges_add_up_as_squares_except_for_common_errors_of_items() -> None:
     last = predicted(of(9))[-1]
     expected = sqrt(9 * 0.2**2 + 9 * 8 * SHARED**2) * 3600.0
     assert last.high_s - last.end_s == pytest.approx(expected)
@@ -48,7 +48,7 @@ def test_items_of_an_exact_duration_have_nothing_in_common() -> None:
     assert last.low_s == last.end_s == last.high_s
 
 
-def test_what_is_left_of_the_item_under_way_has_its_share_of_the_range() -> None:
+def test_the_rest_of_the_item_under_way_has_its_share_of_the_range() -> None:
     (one,) = predicted([PlannedItem(1, item(1, share=0.2).needs, left_s=900.0)])
     assert (one.end_s, one.high_s) == pytest.approx((900.0, 900.0 + 0.25 * 0.2 * 3600.0))
 
@@ -81,7 +81,7 @@ def test_the_next_question_is_that_of_the_first_item_that_asks() -> None:
     assert (datetime.fromisoformat(found[0]), found[1]) == (expected, "item 2, recipe 2: wheel 3: 1#")
 
 
-def test_a_queue_that_stands_with_items_needs_a_person_now() -> None:
+def test_a_stopped_queue_with_items_needs_a_person_now() -> None:
     standing = view_of(queue_of(ItemAdded(item(1))), "standing: not started yet", UTC)
     assert next_ask(standing) == (UTC, "the queue waits for a person: standing: not started yet")
 

@@ -72,7 +72,7 @@ def test_cut_at_any_byte_it_gives_the_queue_of_the_confirmed_events(tmp_path: Pa
         assert read_queue(folder) == queues[sum(end <= size for end in whole)], size
 
 
-def test_a_torn_end_is_cut_off_and_the_record_goes_on(tmp_path: Path, written: bytes) -> None:
+def test_a_torn_end_is_cut_off_and_the_record_continues(tmp_path: Path, written: bytes) -> None:
     folder = tmp_path / "cut"
     folder.mkdir()
     before = ends(written)[-2]

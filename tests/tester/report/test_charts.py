@@ -82,7 +82,7 @@ def test_a_law_is_a_curve_through_the_same_conditions(charts: dict[str, Figure])
     assert "lines: law v2" in found.note
 
 
-def test_a_speed_is_told_and_asked_for_in_its_own_units(charts: dict[str, Figure]) -> None:
+def test_a_speed_is_shown_and_asked_for_in_its_own_units(charts: dict[str, Figure]) -> None:
     found = chart(charts, "slip_velocity-by-temperature")
     curve = next(s for s in found.panels[0].series if s.look == "law")
     assert (found.x_label, curve.x[-1]) == ("slip velocity (mm/s)", 400.0)
@@ -189,7 +189,7 @@ def test_a_repeat_that_is_left_out_is_drawn_apart(tmp_path: Path) -> None:
     assert [(s.label, len(s.x)) for s in panel.series] == [("in the mean", 2), ("left out", 1)]
 
 
-def test_a_law_says_nothing_of_other_compounds_and_of_names_that_are_none() -> None:
+def test_a_law_gives_nothing_for_other_compounds_and_unknown_names() -> None:
     assert isnan(FITS.law_at("paper")(CONDITION.setpoint.but("NR 60")))
     with pytest.raises(KeyError):
         FITS.law_at("wlf_bell")
@@ -221,7 +221,7 @@ def test_the_parts_of_a_law_are_lines_with_their_sum() -> None:
     assert found.log_x and {one.look for one in panel.series} == {"law"}
 
 
-def test_a_law_that_is_drawn_beyond_its_data_is_named_with_what_it_is_beyond(results: RunResults) -> None:
+def test_a_law_drawn_beyond_its_data_is_named_with_the_exceeded_bound(results: RunResults) -> None:
     held = values_of(results)
     far = [replace(one, held=one.held.but(load=2.0 * one.held.number("load"))) for one in held]
     for values, beyond in ((held, False), (far, True)):

@@ -55,7 +55,7 @@ def test_the_same_chart_gives_the_same_file(ending: str, tmp_path: Path) -> None
     assert paths[0].read_bytes() == paths[1].read_bytes()
 
 
-def test_a_drawing_says_its_units_in_text_of_the_svg(tmp_path: Path) -> None:
+def test_a_drawing_has_its_units_in_text_of_the_svg(tmp_path: Path) -> None:
     draw(CHART, tmp_path / "a.svg")
     assert "load (N)" in (tmp_path / "a.svg").read_text(encoding="utf-8")
 

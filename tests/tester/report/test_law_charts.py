@@ -14,7 +14,7 @@ from tests.campaigns.master.synthetic import SPEEDS_M_S, synthetic
 MADE = master_of(synthetic(0, 0.02), 20.0, 30.0)
 
 
-def test_on_the_left_is_what_was_measured_on_the_right_the_same_shifted() -> None:
+def test_measured_points_are_on_the_left_and_shifted_ones_on_the_right() -> None:
     left, right = master_chart(MADE).panels
     assert len(left.series) == 11 and len(right.series) == 12
     assert left.series[3].x == pytest.approx(SPEEDS_M_S)
@@ -22,7 +22,7 @@ def test_on_the_left_is_what_was_measured_on_the_right_the_same_shifted() -> Non
     assert np.log10(right.series[3].x) == pytest.approx([row.x for row in MADE.rows()[27:36]])
 
 
-def test_every_temperature_can_be_told_by_colour_and_mark() -> None:
+def test_every_temperature_has_its_own_colour_and_mark() -> None:
     _, right = master_chart(MADE).panels
     points = [one for one in right.series if one.look != "limit"]
     assert len({(one.style % 8, one.look) for one in points}) == 11

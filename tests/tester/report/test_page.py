@@ -97,7 +97,7 @@ def elements(text: str) -> Iterator[ElementTree.Element]:
     return ElementTree.fromstring(text.strip().removeprefix("<!DOCTYPE html>")).iter()
 
 
-def test_a_page_has_every_section_and_what_was_measured(text: str) -> None:
+def test_a_page_has_every_section_and_the_measured_values(text: str) -> None:
     titles = [one.text for one in elements(text) if one.tag == f"{HTML}h3"]
     assert titles == [
         "Conditions",
@@ -152,7 +152,7 @@ def test_a_page_is_well_formed_of_known_elements_with_names_of_their_own(
 
 
 @pytest.mark.parametrize("which", ["text", "hostile"])
-def test_what_a_page_refers_to_is_in_it(which: str, request: pytest.FixtureRequest) -> None:
+def test_a_page_contains_everything_it_refers_to(which: str, request: pytest.FixtureRequest) -> None:
     text: str = request.getfixturevalue(which)
     found = [*elements(text)]
     ids = {one.get("id") for one in found}
@@ -181,14 +181,14 @@ def test_hostile_names_are_text_and_steer_nothing(hostile: str) -> None:
     assert all(len(one.text or "") <= LONGEST_TEXT + 40 for one in elements(hostile) if one.tag != f"{HTML}style")
 
 
-def test_points_are_named_by_titles_and_figures_have_words_for_who_cannot_see(text: str) -> None:
+def test_points_are_named_by_titles_and_figures_have_text_alternatives(text: str) -> None:
     drawn = [one for one in elements(text) if one.tag == f"{SVG}svg"]
     assert drawn and all(one.get("role") == "img" and one.get("aria-label") for one in drawn)
     names = [one.text for one in elements(text) if one.tag == f"{SVG}title"]
     assert any(name and name.startswith("1#, 300 mm/s, 100 N, 25 degC: 0.8") for name in names)
 
 
-def test_every_term_of_a_budget_is_told_with_its_source_and_its_share(text: str, plain: RunRecord) -> None:
+def test_every_term_of_a_budget_is_listed_with_its_source_and_its_share(text: str, plain: RunRecord) -> None:
     shown = html.unescape(text)
     for row in plain.results.rows:
         for one in row.result.compound_budget.contributions:
@@ -196,7 +196,7 @@ def test_every_term_of_a_budget_is_told_with_its_source_and_its_share(text: str,
     assert "wheel to wheel" in text and "stated 3 % [A]" in text
 
 
-def test_a_run_that_is_not_as_it_was_left_is_said_to_be_so_on_the_first_page(plain: RunRecord) -> None:
+def test_a_changed_run_is_reported_on_the_first_page(plain: RunRecord) -> None:
     found = replace(plain, verification=replace(plain.verification, problems=("run.db: repeat 1: changed",)))
     text = page(found)
     assert "The record is not as it was left: 1 finding, see below." in text.partition("<nav")[0]
@@ -234,7 +234,7 @@ def test_a_text_is_cut_where_it_is_very_long_and_control_characters_become_marks
     assert readable("x" * (LONGEST_TEXT + 7)) == "x" * LONGEST_TEXT + "… (7 more characters)"
 
 
-def test_a_run_without_a_value_has_a_report_that_says_so(tmp_path: Path) -> None:
+def test_a_run_without_a_value_has_a_report_that_states_it(tmp_path: Path) -> None:
     text = page(read_record(made_run(tmp_path / "none", [(25.0, 100.0, 0.3)], failed=[1]), WORDS))
     assert "0 of 1 condition have a value." in text
     assert "No condition has a budget." in text

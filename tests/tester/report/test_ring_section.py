@@ -47,7 +47,7 @@ def with_ring(record: RunRecord, name: str, found: RingRun, rig: str = "mine.yam
     return replace(record, name=name, ring=found, results=replace(results, run=replace(results.run, info=info)))
 
 
-def test_the_section_tells_share_angle_and_speed(plain: RunRecord) -> None:
+def test_the_section_gives_share_angle_and_speed(plain: RunRecord) -> None:
     (section,) = ring_sections(plain, "r1-ring")
     assert section.title == "Slip ring"
     first, gathered = texts(section)
@@ -65,7 +65,7 @@ def test_the_chart_has_the_errors_of_each_sector() -> None:
     assert series.names[3] == "90 to 120°: 60 errors"
 
 
-def test_without_errors_it_says_so_and_draws_nothing(plain: RunRecord) -> None:
+def test_without_errors_it_states_that_and_draws_nothing(plain: RunRecord) -> None:
     (section,) = ring_sections(replace(plain, ring=ring(0)), "r1-ring")
     assert texts(section)[0].startswith("0 of 10000") and not any(isinstance(one, Picture) for one in section.parts)
 
@@ -85,7 +85,7 @@ def test_the_trend_is_over_runs_of_one_rig_in_order_of_time(plain: RunRecord) ->
     assert ring_trend_sections(runs[:1], "all-ring") == []
 
 
-def test_the_trend_is_drawn_with_what_chance_makes_of_it(plain: RunRecord) -> None:
+def test_the_trend_is_drawn_with_its_range_of_chance(plain: RunRecord) -> None:
     (panel,) = trend_chart([(plain, ring(60))], [1000.0]).panels
     (series,) = panel.series
     assert series.y == (6.0,) and series.bars[0] == pytest.approx(1e3 * 1.96 * (0.006 * 0.994 / 10000) ** 0.5)

@@ -107,7 +107,7 @@ READERS: dict[str, Callable[[list[str]], Iterator[Row]]] = {
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_what_is_read_back_is_the_law(solver: str) -> None:
+def test_the_tables_read_back_as_the_law(solver: str) -> None:
     rows = [*READERS[solver](text_of(solver, table()))]
     assert len(rows) == 5 * 4 * 3
     for speed, pressure, temperature, mu in rows:
@@ -123,7 +123,7 @@ def test_axes_ascend_from_end_to_end_of_the_range_and_the_speed_varies_first(sol
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
-def test_the_comments_state_units_area_range_and_what_is_cut(solver: str) -> None:
+def test_the_comments_state_units_area_range_and_cuts(solver: str) -> None:
     notes = " ".join(text_of(solver, table()))
     for said in ("CHECK", "500 mm2", "given", "2024-01-01T00-00-00-mine", "25 to 85 degC", "Cut:"):
         assert said in notes, said
@@ -152,7 +152,7 @@ def test_the_area_is_the_options_else_the_files_else_the_export_is_refused() -> 
         solver_table(LAW)
 
 
-def test_the_command_writes_a_file_and_refuses_what_makes_no_sense(
+def test_the_command_writes_a_file_and_refuses_nonsense(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -116,11 +116,11 @@ def test_conditions_that_differ_in_more_than_temperature_are_no_pair(tmp_path: P
     assert "unknown" in source_of_sensitivity(tmp_path)
 
 
-def test_what_is_known_of_another_compound_is_not_taken(tmp_path: Path) -> None:
+def test_the_sensitivity_of_another_compound_is_not_used(tmp_path: Path) -> None:
     assert "unknown" in source_of_sensitivity(written(tmp_path, known=(KnownSlope("2#", 25.0, 1.5, 0.3, "a file"),)))
 
 
-def test_what_is_known_at_another_temperature_is_not_taken(tmp_path: Path) -> None:
+def test_the_sensitivity_at_another_temperature_is_not_used(tmp_path: Path) -> None:
     assert "unknown" in source_of_sensitivity(written(tmp_path, known=(KnownSlope("1#", 40.0, 1.5, 0.3, "a file"),)))
 
 

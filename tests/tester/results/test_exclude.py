@@ -48,7 +48,7 @@ def tables(folder: Path) -> dict[str, bytes]:
     return {name: (folder / name).read_bytes() for name in TABLES}
 
 
-def test_an_excluded_repeat_is_left_out_of_the_mean_and_says_why(run: Path) -> None:
+def test_an_excluded_repeat_is_left_out_of_the_mean_with_its_reason(run: Path) -> None:
     record_word(run, OUT)
     measured = list(results(run).conditions())[1]
     assert measured.result.mu_resultant == pytest.approx((0.74 + 0.72 + 0.73) / 3)
@@ -68,7 +68,7 @@ def test_the_folders_tables_are_made_anew_and_only_there(run: Path) -> None:
     assert problems(run) == () and verify(run).excluded == 1
 
 
-def test_taken_in_again_the_tables_are_what_they_were_to_the_byte(run: Path) -> None:
+def test_included_again_the_tables_are_identical_to_the_byte(run: Path) -> None:
     before = tables(run)
     record_word(run, OUT)
     record_word(run, IN)
@@ -84,7 +84,7 @@ def test_too_few_repeats_left_flag_the_value(run: Path) -> None:
     assert (found.n_valid, found.doubts) == (2, (SHORT,))
 
 
-def test_without_any_repeat_left_the_value_is_gone_and_says_so(run: Path) -> None:
+def test_without_any_repeat_left_the_value_is_missing_with_a_reason(run: Path) -> None:
     for repeat in (1, 2, 3):
         record_word(run, Word(1, repeat, True, REASON, ""))
     (row,) = results(run).missing()
@@ -103,14 +103,14 @@ def test_without_any_repeat_left_the_value_is_gone_and_says_so(run: Path) -> Non
         (IN, "2/1 has not been excluded"),
     ],
 )
-def test_what_makes_no_sense_is_refused_and_changes_nothing(run: Path, word: Word, message: str) -> None:
+def test_nonsense_is_refused_and_changes_nothing(run: Path, word: Word, message: str) -> None:
     before = (run / "run.db").read_bytes()
     with pytest.raises(CannotExcludeError, match=message):
         record_word(run, word)
     assert (run / "run.db").read_bytes() == before
 
 
-def test_excluding_twice_is_refused_with_the_word_that_stands(run: Path) -> None:
+def test_excluding_twice_is_refused_with_the_earlier_reason(run: Path) -> None:
     record_word(run, OUT)
     with pytest.raises(CannotExcludeError, match=f"excluded already, .* by ada: {REASON}"):
         record_word(run, OUT)
@@ -131,7 +131,7 @@ def test_a_folder_that_was_changed_is_not_given_a_new_manifest(run: Path) -> Non
 
 
 @pytest.mark.parametrize("sql", ["UPDATE exclusion SET reason = 'x'", "DELETE FROM exclusion"])
-def test_what_was_said_cannot_be_changed_or_deleted(run: Path, sql: str) -> None:
+def test_an_exclusion_cannot_be_changed_or_deleted(run: Path, sql: str) -> None:
     record_word(run, OUT)
     database = sqlite3.connect(run / "run.db")
     with pytest.raises(sqlite3.IntegrityError, match="only added"):
@@ -166,7 +166,7 @@ def test_cut_off_before_the_tables_it_is_found_and_the_same_again_finishes_it(
         assert len(reader.exclusions()) == 1
 
 
-def test_the_manifest_of_before_is_kept_so_that_the_first_record_can_still_be_told(run: Path) -> None:
+def test_the_earlier_manifest_is_kept_so_that_the_first_record_can_still_be_verified(run: Path) -> None:
     before = (run / "manifest.json").read_text("utf-8")
     record_word(run, OUT)
     with RunReader(run) as reader:

@@ -41,7 +41,7 @@ def laboratory(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Path
     plugins.cache_clear()
 
 
-def test_a_runs_folder_keeps_what_the_table_says(tmp_path: Path) -> None:
+def test_a_runs_folder_keeps_the_formats_of_the_table(tmp_path: Path) -> None:
     write_all(small_run(tmp_path))
     made = {path.name for path in tmp_path.iterdir()}
     tables = {"appendix.csv", "budget.csv", "conditions.csv", "repeats.csv", "wheel.csv"}

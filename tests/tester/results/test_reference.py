@@ -118,7 +118,7 @@ def test_a_reference_without_a_value_is_missing_and_leaves_the_others(tmp_path: 
     assert drift is not None and drift.references == 2
 
 
-def test_the_end_of_a_run_says_a_sentence(tmp_path: Path) -> None:
+def test_the_end_of_a_run_prints_a_sentence(tmp_path: Path) -> None:
     told = list(ending_table(results(watched_run(tmp_path)), tmp_path))
     assert any("counterface and wheel cannot be told apart" in line for line in told)
     assert any(line.endswith("outside: 3") for line in told)
@@ -131,7 +131,7 @@ def test_a_run_s_folder_keeps_the_table_where_there_are_references(tmp_path: Pat
     assert not (tmp_path / "without" / "reference.csv").exists()
 
 
-def test_show_tells_and_has_the_charts_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_them_and_has_the_charts_as_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     write_all(watched_run(tmp_path / "watched"))
     assert invoke(["show", str(tmp_path / "watched")]) == 0
     assert "limits 0." in capsys.readouterr().out

@@ -192,7 +192,7 @@ def test_samples_read_back_bit_by_bit_from_csv_and_parquet(tmp_path: Path) -> No
         assert list(frame["time_s"]) == [one[0] for one in fed]
 
 
-def test_libreoffice_shows_what_was_meant(tmp_path: Path) -> None:
+def test_libreoffice_shows_the_original_text(tmp_path: Path) -> None:
     office = shutil.which("soffice") or shutil.which("libreoffice")
     if office is None:
         pytest.skip("LibreOffice is not installed")

@@ -27,7 +27,7 @@ def test_every_condition_has_a_row_with_its_mean(tmp_path: Path) -> None:
     assert found.missing() == []
 
 
-def test_a_condition_without_a_valid_repeat_is_missing_and_says_why(tmp_path: Path) -> None:
+def test_a_condition_without_a_valid_repeat_is_missing_with_a_reason(tmp_path: Path) -> None:
     (row,) = results(small_run(tmp_path, ([], [0.73, 0.74, 0.72]))).missing()
     assert row.describe() == "1#, 300 mm/s, 100 N, 25 degC: insufficient: none of 0 repeats is valid"
 
@@ -67,7 +67,7 @@ def test_replicates_make_one_row_with_a_combined_value(tmp_path: Path) -> None:
     assert (row.result.n_valid, len(row.replicates), len(list(found.conditions()))) == (3, 3, 3)
 
 
-def test_a_repeat_that_is_left_out_says_why(tmp_path: Path) -> None:
+def test_a_left_out_repeat_has_a_reason(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, repeats=4)])
     record(writer, 1, [0.70, 0.71, 0.72])
@@ -85,7 +85,7 @@ def test_a_setting_of_the_budget_that_is_no_number_is_refused(tmp_path: Path) ->
         results(tmp_path)
 
 
-def test_a_run_whose_recipe_says_so_has_the_mean_of_the_closest_two(tmp_path: Path) -> None:
+def test_a_run_has_the_mean_of_the_closest_two_where_its_recipe_asks_for_it(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(replace(RUN, metadata={"combine": "paper"}), SPECIMENS, [CONDITION])
     record(writer, 1, [0.80, 0.70, 0.72])

@@ -66,7 +66,7 @@ def test_every_measurement_of_a_setting_that_disagrees_is_in_doubt_and_no_other(
     assert "look for what changed in between" in found.rows[0].advise()
 
 
-def test_the_value_that_stands_out_is_named(tmp_path: Path) -> None:
+def test_the_outlier_is_named(tmp_path: Path) -> None:
     (setting,) = results(repeated_run(tmp_path, CHANGED)).settings
     verdict, differences = setting.lines("wheel")
     assert verdict.startswith("1#, 300 mm/s, 100 N, 25 degC: 3 measurements do not agree (chi-squared ")
@@ -96,7 +96,7 @@ def test_more_differences_than_a_line_holds_are_counted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("measurements", [ALIKE, CHANGED])
-def test_end_of_run_show_report_and_json_say_the_same(
+def test_end_of_run_show_report_and_json_agree(
     measurements: Sequence[list[float]], tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     folder = repeated_run(tmp_path, measurements)

@@ -166,7 +166,7 @@ def test_those_of_a_simulated_rig_leave_it_empty_for_the_same_seed_gives_the_sam
     assert line["record_head"] == ""
 
 
-def test_a_risk_that_was_accepted_stands_in_every_row_of_every_table(tmp_path: Path) -> None:
+def test_an_accepted_risk_is_in_every_row_of_every_table(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     risk = {"accepted_risk": "trial of a new cell", "loose_safety_keys": "limits.load 480 N is looser than 450 N"}
     writer.begin_run(replace(RUN, metadata=risk), SPECIMENS, [CONDITION])

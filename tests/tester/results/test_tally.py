@@ -28,7 +28,7 @@ def test_notes_are_counted_beside_doubts(tmp_path: Path) -> None:
     )
 
 
-def test_no_doubt_and_a_note_are_told_apart(tmp_path: Path) -> None:
+def test_no_doubt_and_a_note_are_distinguished(tmp_path: Path) -> None:
     assert sentence(small_run(tmp_path)) == (
         "All 2 conditions have a value; none carries a doubt, 2 carry a note (extended)."
     )
@@ -43,7 +43,7 @@ def test_references_are_in_no_count(tmp_path: Path) -> None:
     assert sentence(watched_run(tmp_path, (SHARP, [nan] * 3, BLUNT))).startswith("All 2 conditions have a value; ")
 
 
-def test_every_flag_that_was_raised_comes_with_its_meaning_and_what_helps(tmp_path: Path) -> None:
+def test_every_raised_flag_comes_with_its_meaning_and_remedy(tmp_path: Path) -> None:
     with RunReader(watched_run(tmp_path)) as reader:
         lines = [*flag_lines(results_of(reader))]
     (doubt,) = (line for line in lines if line.startswith("reference out of limits (doubt): "))

@@ -92,7 +92,7 @@ def test_a_workbook_has_the_tables_that_a_runs_folder_keeps_cell_by_cell(tmp_pat
                     assert same, (name, text, cell)
 
 
-def test_a_workbook_agrees_with_what_show_prints(tmp_path: Path) -> None:
+def test_a_workbook_agrees_with_show(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path)) as reader:
         sheet = openpyxl.load_workbook(io.BytesIO(made("xlsx", reader)))["conditions"]
         table = conditions_table(Record(reader).results)

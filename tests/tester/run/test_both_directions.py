@@ -106,14 +106,14 @@ def test_the_value_is_half_the_difference_and_free_of_the_cell_s_angle(whole: Pa
         assert results_of(reader).rows[0].result.both_ways is not None
 
 
-def test_the_run_tells_the_cell_s_angle(whole: Path) -> None:
+def test_the_run_prints_the_cell_s_angle(whole: Path) -> None:
     run = table(whole, "directions.csv")[-1]
     mu = float(table(whole, "conditions.csv")[0]["mu"])
     assert run["level"] == "run" and float(run["misalignment_u_standard_deg"]) > 0.0
     assert float(run["misalignment_deg"]) == pytest.approx(turned_deg(mu), abs=0.1)
 
 
-def test_a_run_that_was_killed_within_a_pair_goes_on_in_the_same_direction(whole: Path, resumed: Path) -> None:
+def test_a_run_killed_within_a_pair_resumes_in_the_same_direction(whole: Path, resumed: Path) -> None:
     with RunReader(resumed) as reader:
         attempts = [(r.repeat, r.attempt, r.result.status) for r in reader.repeats(attempts=True)]
     assert (4, 1, RepeatStatus.VOID) in attempts and (4, 2, RepeatStatus.VALID) in attempts
@@ -130,7 +130,7 @@ def test_the_record_bears_out_its_tables(whole: Path, resumed: Path) -> None:
     assert invoke(["verify", str(whole)]) == 0 and invoke(["verify", str(resumed)]) == 0
 
 
-def test_show_tells_the_angle_and_the_pairs(whole: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_the_angle_and_the_pairs(whole: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["show", str(whole)]) == 0
     out = capsys.readouterr().out
     assert "both directions: the cell's axes seem to be off by" in out and "3 of 3" in out

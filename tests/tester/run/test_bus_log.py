@@ -61,7 +61,7 @@ def test_each_direction_is_in_order_of_time(frames: list[can.Message]) -> None:
         assert times and all(a <= b for a, b in pairwise(times))
 
 
-def test_what_the_computer_sends_is_marked(frames: list[can.Message]) -> None:
+def test_frames_of_the_computer_are_marked(frames: list[can.Message]) -> None:
     assert not any(frame.is_rx for frame in of(frames, SYNC) + of(frames, NMT) + of(frames, 0x201))
     assert all(frame.is_rx for frame in of(frames, 0x181) + of(frames, 0x701))
 

@@ -26,14 +26,14 @@ def session(home: Path, *overrides: str) -> tuple[Session, Screen]:
     return Session(options, screen), screen
 
 
-def test_an_overdue_calibration_refuses_the_start_where_the_rig_file_says_so(tmp_path: Path) -> None:
+def test_an_overdue_calibration_refuses_the_start_where_the_rig_file_asks_for_it(tmp_path: Path) -> None:
     one, _ = session(tmp_path, ENDED, "calibration.overdue=refuse")
     with pytest.raises(CannotStartError, match="load cell ended 2020-01-31"):
         one.run()
     assert not (tmp_path / "runs").exists()
 
 
-def test_an_overdue_calibration_warns_where_the_rig_file_says_nothing(tmp_path: Path) -> None:
+def test_an_overdue_calibration_warns_by_default(tmp_path: Path) -> None:
     one, screen = session(tmp_path, ENDED)
     assert one.run() == 0
     assert "calibration overdue: load cell ended 2020-01-31" in screen.messages
@@ -50,7 +50,7 @@ def test_without_a_record_the_budget_is_as_it_was() -> None:
     assert recipe_part(rig).terms(rig) == TERMS
 
 
-def test_what_weights_found_is_a_term_and_the_run_names_the_record() -> None:
+def test_the_result_of_weights_is_a_term_and_the_run_names_the_record() -> None:
     rig = load_rig("sim", ["calibration.cell_sensitivity=0.26 %", f"calibration.record={'a' * 64}"])
     term = next(one for one in recipe_part(rig).terms(rig) if one.name == "cell sensitivity")
     assert (term.acts, term.bound) == (Acts.COEFFICIENT, pytest.approx(0.0026))

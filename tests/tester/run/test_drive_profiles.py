@@ -36,7 +36,7 @@ def test_a_short_recipe_runs_to_its_end_without_a_trip(profile: str) -> None:
 
 
 @pytest.mark.parametrize("profile", NOT_FOR_A_PRESS)
-def test_a_press_without_what_protects_it_is_refused_by_name(profile: str) -> None:
+def test_a_press_without_its_protection_is_refused_by_name(profile: str) -> None:
     with pytest.raises(InvalidSource) as error:
         load_rig(overrides=(f"axes.press.profile={profile}",))
     told = [problem.message for problem in error.value.problems]
@@ -44,7 +44,7 @@ def test_a_press_without_what_protects_it_is_refused_by_name(profile: str) -> No
     assert any("0x6072:00" in one and "caps the force" in one for one in told) is (profile == "kinco_fd")
 
 
-def test_what_every_drive_refuses_is_told_at_once() -> None:
+def test_refusals_of_all_drives_are_reported_at_once() -> None:
     simulation = Simulation(SHORT)
     for name in ("wheel", "belt"):
         values = simulation.world.axes[name].store.values

@@ -40,7 +40,7 @@ def test_a_run_with_a_part_that_was_not_begun_is_stopped() -> None:
     assert (ending.outcome, ending.reason) == (STOPPED, "interrupted by the operator")
 
 
-def test_a_run_of_which_nothing_was_begun_is_stopped() -> None:
+def test_a_run_without_a_begun_part_is_stopped() -> None:
     assert ending_of([], 2, StopLevel.TERMINATED).outcome is STOPPED
 
 
@@ -66,7 +66,7 @@ class Told:
         (StopLevel.INTERRUPTED | StopLevel.FAST, ("interrupted by the operator", True, True)),
     ],
 )
-def test_what_one_has_ordered_no_other_takes_back(stop: StopLevel, said: tuple[str, bool, bool]) -> None:
+def test_an_order_of_one_part_is_not_withdrawn_by_another(stop: StopLevel, said: tuple[str, bool, bool]) -> None:
     run = Told()
     stop.tell(run)  # type: ignore[arg-type]
     assert run.said == [said]

@@ -119,7 +119,7 @@ def test_after_a_kill_the_devices_stop_by_themselves():
     assert stage.rig.axes["wheel"].axis.value == 0.0
 
 
-def test_a_press_that_holds_without_power_keeps_its_force_and_everything_stands():
+def test_a_press_that_holds_without_power_keeps_its_force_and_everything_is_at_rest():
     stage = Stage(SHORT, ("sim.press_on_power_loss=hold", "axes.press.screw.spring=0 N"))
     while not (stage.run.engine.ctx.contact.loaded and stage.rig.plant.force_z_n > 100.0):
         stage.tick()
@@ -137,7 +137,7 @@ def test_a_drive_that_takes_no_setpoints_stops_for_want_of_our_heartbeat():
     assert not stage.observer.found
 
 
-def test_what_was_done_to_a_run_is_in_its_journal():
+def test_injected_faults_are_in_the_journal_of_a_run():
     stage = started().copy()
     told: list[str] = []
     stage.ledger.event = lambda t, kind, text, *rest, **more: told.append(f"{kind}: {text}")  # type: ignore[method-assign]

@@ -20,7 +20,7 @@ def test_every_packaged_rig_is_of_a_kind_that_can_be_run(name: str) -> None:
     assert run_parts(rig).plant and served_kind(rig).machine
 
 
-def test_a_rig_of_a_kind_without_runs_is_refused_with_what_is_missing(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_rig_of_a_kind_without_runs_is_refused_with_the_missing_parts(monkeypatch: pytest.MonkeyPatch) -> None:
     text = load_rig("sim").text
     monkeypatch.setattr("tester.run.kind_lookup.find", lambda _name: replace(KIND, runs=None))
     with pytest.raises(InvalidSource, match=r"a rig of the kind wheel_on_belt cannot run recipes.*has no runs"):

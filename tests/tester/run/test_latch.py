@@ -39,7 +39,7 @@ def tripped(folder: Path, rig: RigConfig, *, tables: bool = True) -> Path:
     return folder
 
 
-def test_a_trip_stays_open_until_it_is_acknowledged_and_then_says_by_whom(tmp_path: Path, rig: RigConfig) -> None:
+def test_a_trip_stays_open_until_it_is_acknowledged_and_then_names_the_person(tmp_path: Path, rig: RigConfig) -> None:
     folder = tripped(tmp_path / "one", rig)
     found = open_trips(tmp_path, rig)
     assert [str(one)[:33] for one in found] == ["overload (460 N, limit 450 N) in "[:33]]
@@ -51,7 +51,7 @@ def test_a_trip_stays_open_until_it_is_acknowledged_and_then_says_by_whom(tmp_pa
     assert verify(folder).problems == ()
 
 
-def test_a_killed_run_and_a_stay_in_manual_mode_count_too(tmp_path: Path, rig: RigConfig) -> None:
+def test_a_killed_run_and_a_stay_in_manual_mode_also_count(tmp_path: Path, rig: RigConfig) -> None:
     tripped(tmp_path / "cut off", rig, tables=False)
     tripped(tmp_path / MANUAL_RUNS / "by hand", rig, tables=False)
     found = open_trips(tmp_path, rig)

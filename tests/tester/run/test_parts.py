@@ -102,7 +102,7 @@ def test_every_part_has_a_bus_log_of_its_own(one: Ended) -> None:
 
 
 @pytest.mark.parametrize("ended", ["one", "two"])
-def test_the_end_of_every_part_is_told(ended: str, request: pytest.FixtureRequest) -> None:
+def test_the_end_of_every_part_is_reported(ended: str, request: pytest.FixtureRequest) -> None:
     records = request.getfixturevalue(ended).screen.records
     assert sorted(r["part"] for r in records if r["event"] == "part end") == [1, 2]
 
@@ -110,7 +110,7 @@ def test_the_end_of_every_part_is_told(ended: str, request: pytest.FixtureReques
 # -- refusals -----------------------------------------------------------------------------------------------------
 
 
-def test_several_jobs_and_nobody_to_say_yes_is_a_usage_error(tmp_path: Path) -> None:
+def test_several_jobs_without_a_person_to_confirm_are_a_usage_error(tmp_path: Path) -> None:
     ended = run(tmp_path, jobs=2, screen=Screen(answer_yes=False))
     assert ended.code == 2 and not ended.out.exists()
     refusal = "--jobs 2: prompts of several parts at a time cannot be answered; use --yes, or one job"
@@ -182,7 +182,7 @@ def test_a_trip_in_the_first_part_ends_the_run(
     assert [r["part"] for r in ended.screen.records if r["event"] == "part end"] == [1]
 
 
-def test_a_trip_in_the_second_part_keeps_what_the_first_measured(
+def test_a_trip_in_the_second_part_keeps_the_results_of_the_first(
     tmp_path: Path, one: Ended, when_mounted: Callable[[int, Callable[[TickedWorld], object]], None]
 ) -> None:
     when_mounted(2, open_guard)
@@ -202,7 +202,7 @@ def test_an_interrupt_begins_no_further_part(
         assert [one.piece for one in reader.pieces()] == [1]
 
 
-def test_a_run_that_is_cut_off_in_its_second_part_keeps_the_first_and_goes_on(
+def test_a_run_interrupted_in_its_second_part_keeps_the_first_and_resumes(
     tmp_path: Path, one: Ended, when_mounted: Callable[[int, Callable[[TickedWorld], object]], None]
 ) -> None:
     def crash(_: TickedWorld) -> None:

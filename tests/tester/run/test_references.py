@@ -98,7 +98,7 @@ def test_a_wheel_that_comes_on_again_is_as_worn_as_it_was(whole: Path) -> None:
     assert travels[1].piece_m < travels[2].piece_m <= own.sliding_m
 
 
-def test_the_belt_goes_on_below_all_of_them(whole: Path) -> None:
+def test_the_belt_is_the_same_for_all_of_them(whole: Path) -> None:
     with RunReader(whole) as reader:
         travelled = [one.counterface_m for one in reader.travels().values()]
     assert travelled == sorted(travelled) and travelled[0] > 0.0
@@ -108,7 +108,7 @@ def test_the_belt_goes_on_below_all_of_them(whole: Path) -> None:
     assert [0.9 ** (one / 100.0) for one in travelled] == pytest.approx(grip, rel=0.01)
 
 
-def test_it_goes_on_with_the_reserved_wheel_and_the_belt_as_it_was(resumed: tuple[Path, float]) -> None:
+def test_it_resumes_with_the_reserved_wheel_and_the_same_belt(resumed: tuple[Path, float]) -> None:
     folder, before_m = resumed
     assert pieces(folder) == [(1, 1), (2, 2), (3, 2), (4, 1)]
     with RunReader(folder) as reader:

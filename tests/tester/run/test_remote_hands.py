@@ -84,7 +84,7 @@ def hands(channel: Scripted, kept: Kept) -> RemoteHands:
 
 
 @pytest.mark.parametrize("name", RECIPES)
-def test_a_run_through_the_console_measures_what_a_run_in_one_process_measures(name: str) -> None:
+def test_a_run_through_the_console_measures_the_same_as_a_run_in_one_process(name: str) -> None:
     rig = load_rig(name)
     here, there = (Rehearsal(rig, RECIPES[name], remote=remote, seed=3).to_the_end() for remote in (False, True))
     assert there.run.outcome is Outcome.DONE and not there.kept.trips
@@ -121,7 +121,7 @@ def test_nothing_moves_before_the_work_is_done_and_without_an_answer_the_run_end
     assert "the hands at the console: lower: " in there.run.reason and not there.kept.trips
 
 
-def test_what_the_machine_refuses_ends_the_run_with_the_reason() -> None:
+def test_a_refusal_by_the_machine_ends_the_run_with_the_reason() -> None:
     rig = load_rig("pin-on-disc")
     there = Rehearsal(rig, DISC, remote=True)
     refuse = there.channel.console.command
@@ -147,7 +147,7 @@ def test_it_is_busy_until_the_answer_is_complete(hands: RemoteHands, channel: Sc
     assert kept.hands == ["hang 20.0 N"] and not hands.failed
 
 
-def test_answers_of_several_lines_are_told_apart(hands: RemoteHands, channel: Scripted, kept: Kept) -> None:
+def test_answers_of_several_lines_are_distinguished(hands: RemoteHands, channel: Scripted, kept: Kept) -> None:
     hands.install(1, "SBR")
     hands.raise_arm()
     channel.answers.append(f"{DONE}specimen 1 SBR\n\n{REFUSED}stuck\n\n".encode())

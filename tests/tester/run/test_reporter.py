@@ -63,7 +63,7 @@ def everything(screen: LastingScreen) -> None:
 
 
 @pytest.mark.parametrize("name", ["begin", "show", "attend", "commands", "emit", "end", "message bye", "result"])
-def test_a_failure_is_told_once_with_its_cause(name: str) -> None:
+def test_a_failure_is_reported_once_with_its_cause(name: str) -> None:
     told: list[str] = []
     everything(LastingScreen(Failing(name), told.append))
     assert told == ["the run can no longer be shown: its reader is gone"]

@@ -41,7 +41,7 @@ def resume(folder: Path, reason: str = "") -> tuple[int, Screen]:
     return Session(SessionOptions(), screen).resume(folder, reason), screen
 
 
-def test_what_is_committed_is_known(cut: Path) -> None:
+def test_committed_repeats_are_known(cut: Path) -> None:
     with RunReader(cut) as reader:
         point = resume_point(reader)
     assert not point.finished and point.next_repeat == (1, 2) and point.session == 2
@@ -50,7 +50,7 @@ def test_what_is_committed_is_known(cut: Path) -> None:
     assert wheel.number == 1 and 0.0 < 90.0 - wheel.diameter_mm < 0.1 and wheel.sliding_m > 0.5
 
 
-def test_a_run_goes_on_at_the_first_uncommitted_repeat(again: Path) -> None:
+def test_a_run_resumes_at_the_first_uncommitted_repeat(again: Path) -> None:
     code, screen = resume(again)
     assert code == 0 and screen.results == [str(again)]
     assert "resumes at repeat 2 of condition 1" in screen.messages[0]
@@ -136,7 +136,7 @@ def edit(path: Path, old: str, new: str) -> None:
         ("rig.yaml", "outer_gain:", "outer_gain: 1.25 #", ["rig"]),
     ],
 )
-def test_what_changed_is_refused_and_goes_on_with_a_reason_that_is_stored(
+def test_changes_are_refused_unless_a_reason_is_given_and_stored(
     again: Path, name: str, old: str, new: str, subjects: list[str]
 ) -> None:
     edit(again / name, old, new)
@@ -152,7 +152,7 @@ def test_what_changed_is_refused_and_goes_on_with_a_reason_that_is_stored(
     assert invoke(["verify", str(again)]) == 0
 
 
-def test_a_risk_is_asked_for_again_and_stands_in_the_record_and_every_table(again: Path) -> None:
+def test_a_risk_is_asked_for_again_and_is_in_the_record_and_every_table(again: Path) -> None:
     edit(again / "rig.yaml", "hold_at_most:", "hold_at_most: 3 h #")
     with pytest.raises(CannotStartError, match=r"hold_at_most.*--accept-risk REASON"):
         resume(again, "longer holds")
@@ -182,7 +182,7 @@ def test_another_test_is_refused_whatever_the_reason(again: Path) -> None:
         resume(again, "no reason will do")
 
 
-def test_the_command_exits_3_for_what_changed_and_names_it(again: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_exits_3_for_a_change_and_names_it(again: Path, capsys: pytest.CaptureFixture[str]) -> None:
     edit(again / "recipe.yaml", "recipe: short", "recipe: another name")
     assert invoke(["resume", str(again), "--yes"]) == 3
     assert "recipe changed since the run began" in capsys.readouterr().err
@@ -197,7 +197,7 @@ def test_no_run_is_a_usage_error(tmp_path: Path, capsys: pytest.CaptureFixture[s
     assert invoke(["resume", str(tmp_path / "nothing"), "--yes"]) == 2
 
 
-def test_verify_names_what_is_not_as_it_was_left(again: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_verify_names_changed_files(again: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert invoke(["verify", str(again)]) == 6  # interrupted, but valid up to there
     resume(again)
     with (again / "conditions.csv").open("a") as file:

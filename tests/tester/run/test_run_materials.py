@@ -87,7 +87,7 @@ def test_copies_lie_beside_the_run_s_recipe(cut: Path) -> None:
     assert (cut / "surfaces" / "s0.yaml").read_bytes() == packaged.read_bytes()
 
 
-def test_a_resumed_run_keeps_what_was_recorded(again: Path) -> None:
+def test_a_resumed_run_keeps_the_recorded_files(again: Path) -> None:
     (again / "compounds" / "own.yaml").write_text('name: "1#"\nTg: -10 degC\n', encoding="utf-8")
     (again / "compounds" / "dma.csv").unlink()
     screen = Screen()
@@ -182,7 +182,7 @@ def test_files_of_one_name_get_folders_of_their_own() -> None:
     ]  # fmt: skip
 
 
-def test_what_is_no_short_text_is_kept_by_its_hash(tmp_path: Path) -> None:
+def test_a_long_or_binary_file_is_kept_by_its_hash(tmp_path: Path) -> None:
     binary = DataFile("scan.al3d", b"\0\1\2")
     (_, kept) = kept_files([material("/a/c.yaml", "A", "name: A\n", binary)])
     assert isinstance(kept, KeptFile) and kept.stored.text is None and kept.content == b"\0\1\2"

@@ -159,7 +159,7 @@ def test_the_folder_is_named_by_date_and_recipe(done: Ended) -> None:
     assert done.folder.parent == done.out
 
 
-def test_the_folder_holds_what_was_run_and_what_came_out(done: Ended) -> None:
+def test_the_folder_holds_inputs_and_results(done: Ended) -> None:
     names = {path.name for path in done.folder.iterdir()}
     assert names >= {"run.db", "recipe.yaml", "rig.yaml", "manifest.json", *TABLES}
     assert (done.folder / "recipe.yaml").read_text(encoding="utf-8") == SHORT
@@ -214,7 +214,7 @@ def test_a_drift_that_is_not_shown_is_a_row_with_a_flag(undecided: Ended) -> Non
     assert len((undecided.folder / "appendix.csv").read_text(encoding="utf-8-sig").splitlines()) == 2
 
 
-def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp_path: Path) -> None:
+def test_tried_conditions_are_listed_and_the_others_share_a_line(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, [replace(CONDITION, condition=i, row=i) for i in range(1, 166)])
     record(writer, 1, [0.9] * 3)
@@ -231,7 +231,7 @@ def test_conditions_that_were_tried_are_told_and_the_others_are_no_line_each(tmp
     assert len(end["missing"]) == 163  # type: ignore[arg-type]
 
 
-def test_nobody_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
+def test_no_person_to_ask_is_a_usage_error_without_a_trace(tmp_path: Path) -> None:
     ended = run(tmp_path, screen=Screen(answer_yes=False))
     assert ended.code == 2 and not ended.out.exists()
     assert ended.screen.messages == ["the recipe has prompts, and this is no interactive terminal: use --yes"]
@@ -254,7 +254,7 @@ def test_a_rig_that_does_not_answer_exits_4(tmp_path: Path, at_the_rig: Callable
     assert any("belt drive (node 2)" in text for text in ended.screen.messages)
 
 
-def test_a_guard_that_is_open_from_the_start_exits_4_and_says_so(
+def test_a_guard_that_is_open_from_the_start_exits_4_and_is_reported(
     tmp_path: Path, at_the_rig: Callable[[Prepare], None]
 ) -> None:
     def open_guard(world: TickedWorld, hands: Attendant) -> Attendant:
@@ -293,7 +293,7 @@ def test_signals_stop_a_run(
     assert ended.code == code and ended.status() == "stopped"
 
 
-def test_a_run_that_an_error_has_interrupted_can_go_on(tmp_path: Path) -> None:
+def test_a_run_interrupted_by_an_error_can_be_resumed(tmp_path: Path) -> None:
     with pytest.raises(KeyError):
         run(tmp_path, *QUIET, screen=Breaking(KeyError("a bug")))
     (folder,) = (tmp_path / "runs").iterdir()
@@ -385,7 +385,7 @@ class Removing(Screen):
 
 
 @pytest.mark.skipif(os.name != "posix", reason="Windows removes no file that is open")
-def test_a_run_whose_folder_is_removed_stops_in_a_controlled_way_and_says_so(tmp_path: Path) -> None:
+def test_a_run_whose_folder_is_removed_stops_in_a_controlled_way_and_reports_it(tmp_path: Path) -> None:
     ended = run(tmp_path, "interlocks.cooldown_hub=26 degC", screen=Removing(tmp_path / "runs"))
     assert ended.code == 1
     (stopped,) = [text for text in ended.screen.messages if text.startswith("stopped: ")]
@@ -450,19 +450,19 @@ def test_an_accepted_risk_is_kept_with_the_run_and_shown_at_its_end(tmp_path: Pa
     assert "RISK ACCEPTED" in "\n".join(ending_lines(folder))
 
 
-def test_a_risk_that_nobody_accepted_begins_nothing(tmp_path: Path) -> None:
+def test_an_unaccepted_risk_begins_nothing(tmp_path: Path) -> None:
     with pytest.raises(InvalidSource, match="hold_at_most"):
         run(tmp_path, *QUIET, LOOSE)
     assert not (tmp_path / "runs").exists()
 
 
-def test_a_run_without_risks_says_nothing_of_them(done: Ended) -> None:
+def test_a_run_without_risks_does_not_mention_them(done: Ended) -> None:
     with RunReader(Path(done.screen.results[-1])) as reader:
         assert reader.run().info.risk == ""
         assert "accepted_risk" not in reader.run().info.metadata
 
 
-def test_a_run_begins_with_what_the_runs_beside_it_have_shown_of_the_rig_s_heat(tmp_path: Path) -> None:
+def test_a_run_begins_with_the_heat_evidence_of_the_runs_beside_it(tmp_path: Path) -> None:
     heating = heating_data(load_rig("sim", QUIET), 20.4e3, 20e3, 35.0)
     before = tmp_path / "runs" / "2024-02-21T14-05-09-small"
     before.mkdir(parents=True)

@@ -47,13 +47,13 @@ def test_an_exchanged_drive_is_named_with_both_serial_numbers(connected: Simulat
     assert found == "differs from the last good run yesterday: belt 0x1018:04 (serial number): was 77, is 2"
 
 
-def test_what_was_not_read_now_is_no_difference(connected: Simulation) -> None:
+def test_an_unread_parameter_is_no_difference(connected: Simulation) -> None:
     before = good(connected)
     belt = dict(before.devices["belt"]) | {"0x607E:00": DeviceParameter("64", "polarity")}
     assert told(connected, GoodRun("yesterday", {"belt": belt, "lost": belt})) == ""
 
 
-def test_of_many_differences_some_are_told_and_the_number(connected: Simulation) -> None:
+def test_of_many_differences_some_are_reported_and_their_number(connected: Simulation) -> None:
     before = good(connected)
     other = {key: DeviceParameter("-1") for key in before.devices["belt"]}
     found = told(connected, GoodRun("yesterday", {"belt": other}))
@@ -61,7 +61,7 @@ def test_of_many_differences_some_are_told_and_the_number(connected: Simulation)
     assert found.endswith(f"; and {len(other) - NAMED} more")
 
 
-def test_a_start_warns_in_its_record_and_on_the_screen_and_goes_on() -> None:
+def test_a_start_warns_in_its_record_and_on_the_screen_and_continues() -> None:
     simulation = Simulation(BRIEF, QUIET)
     said: list[str] = []
     before = GoodRun("yesterday", {"belt": {"0x6076:00": DeviceParameter("1", "rated torque")}})

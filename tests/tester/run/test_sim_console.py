@@ -83,7 +83,7 @@ def test_a_fault_may_come_later(bench: Bench) -> None:
     assert bench.say("faults") == ["now: load cell frozen"]
 
 
-def test_clear_ends_what_is_wrong_and_what_is_to_come(bench: Bench) -> None:
+def test_clear_ends_present_and_planned_faults(bench: Bench) -> None:
     before = bench.rig.devices["load cell"].powered
     bench.say("fault load cell without supply")
     bench.say("fault t=50 s: load cell frozen")
@@ -111,7 +111,7 @@ def test_clear_ends_what_is_wrong_and_what_is_to_come(bench: Bench) -> None:
         ("fault", "help"),
     ],
 )
-def test_what_cannot_be_done_is_said(bench: Bench, line: str, why: str) -> None:
+def test_impossible_commands_are_reported(bench: Bench, line: str, why: str) -> None:
     bench.live(0.05)
     assert why in " ".join(bench.say(line))
     assert bench.say("faults") == ("nothing is wrong",)
@@ -187,7 +187,7 @@ def test_the_clock_of_the_rig_runs_at_its_speed_and_never_jumps() -> None:
     assert clock.computer_s(24.0) == pytest.approx(computer.s - 2.0)
 
 
-def test_an_idle_speed_counts_while_nobody_is_on_the_bus() -> None:
+def test_an_idle_speed_counts_while_no_client_is_on_the_bus() -> None:
     computer = Computer()
     clock = RigClock(1.0, 20.0, computer)
     computer.s += 1.0
@@ -199,6 +199,6 @@ def test_an_idle_speed_counts_while_nobody_is_on_the_bus() -> None:
     assert clock() == pytest.approx(41.0)
 
 
-def test_a_speed_says_what_it_does_to_time_outs(bench: Bench) -> None:
+def test_a_speed_reports_its_effect_on_time_outs(bench: Bench) -> None:
     assert bench.say("speed 4") == ("4 x: a device's time-out of 100 ms takes 25 ms of a program's clock",)
     assert bench.say("idle speed 10")[1] == "10 x while no program is on the CAN bus"

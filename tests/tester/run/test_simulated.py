@@ -81,7 +81,7 @@ def test_the_condition_has_the_factor_of_its_setting(told: Path) -> None:
     assert {one["condition"] for one in truth(told).values()} == {of_setting}
 
 
-def test_nothing_is_recorded_where_nobody_asked_and_the_tables_are_the_same(told: Path, tmp_path: Path) -> None:
+def test_nothing_is_recorded_by_default_and_the_tables_are_the_same(told: Path, tmp_path: Path) -> None:
     silent = run(tmp_path / "run", "sim.noise=0", "sim.running_in=0", "sim.variability.within=0")
     assert truth(silent) == {}
     for name in ("appendix.csv", "conditions.csv", "budget.csv", "repeats.csv"):
@@ -94,7 +94,7 @@ def _names(folder: str) -> Iterator[str]:
 
 
 @pytest.mark.parametrize("folder", ["tester/analysis", "tester/results", "tester/run/sweep"])
-def test_what_reduces_and_exports_knows_no_truth(folder: str) -> None:
+def test_reduction_and_export_know_no_truth(folder: str) -> None:
     assert [name for name in _names(folder) if "truth" in name.lower()] == []
 
 

@@ -86,7 +86,7 @@ def ended(part: int, outcome: Outcome = Outcome.DONE) -> PartEnd:
     return PartEnd(part, outcome)
 
 
-def test_parts_that_end_well_stop_nobody(carried: Callable[[dict[int, Result]], Carried]) -> None:
+def test_parts_that_end_well_stop_no_other(carried: Callable[[dict[int, Result]], Carried]) -> None:
     found = carried({1: ended(1), 2: ended(2), 3: ended(3)})
     assert [end.part for end in found.ends] == [1, 2, 3] and found.levels == [StopLevel.NONE] * 3
 
@@ -114,17 +114,17 @@ def test_an_error_in_a_part_is_not_hidden(carried: Callable[[dict[int, Result]],
         carried({1: ended(1), 2: RuntimeError("no such wheel"), 3: None})
 
 
-def test_what_workers_report_is_shown(carried: Callable[[dict[int, Result]], Carried]) -> None:
+def test_reports_of_workers_are_shown(carried: Callable[[dict[int, Result]], Carried]) -> None:
     (sight,) = carried({1: ended(1), 2: ended(2), 3: ended(3)}).sights
     assert (sight.now_s, sight.at.part, sight.at.share) == (1.5, 2, 0.25)
 
 
-def test_a_process_that_is_no_worker_is_told_nothing_and_says_nothing() -> None:
+def test_a_process_that_is_no_worker_gets_and_sends_nothing() -> None:
     say("unheard")
     assert stop_level() is StopLevel.NONE
 
 
-def test_what_takes_longest_begins_first() -> None:
+def test_the_longest_part_begins_first() -> None:
     brief, long = split(plan_of(PREPARED))[0], split(plan_of(WORN))[0]
     parts = (brief, replace(long, number=2), replace(brief, number=3))
     assert longest_first(Work(rig(), brief.plan, parts)) == [2, 1, 3]

@@ -18,7 +18,7 @@ def test_on_a_unix_socket_it_is_the_user_id() -> None:
         assert peer_text(ours) == f"user id {os.getuid()}"
 
 
-def test_where_the_system_does_not_tell_that_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_unsupported_system_is_stated(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.delattr(socket, "SO_PEERCRED", raising=False)
     ours, theirs = socket.socketpair()
     with ours, theirs:
@@ -37,7 +37,7 @@ def test_behind_tcp_it_is_the_address() -> None:
             assert peer_text(taken) == f"address 127.0.0.1:{client.getsockname()[1]}"
 
 
-def test_one_that_is_gone_is_not_known(tmp_path: Path) -> None:
+def test_a_gone_peer_is_unknown(tmp_path: Path) -> None:
     gone = socket.socket()
     gone.close()
     assert peer_text(gone) == "peer not known"

@@ -47,13 +47,13 @@ def test_a_returned_alarm_that_comes_again_is_a_new_one(alarms: AlarmList) -> No
     assert [(alarm.number, alarm.state) for alarm in alarms.listed()] == [(2, "active")]
 
 
-def test_a_hint_that_nobody_acknowledged_leaves_with_its_cause(alarms: AlarmList) -> None:
+def test_an_unacknowledged_hint_leaves_with_its_cause(alarms: AlarmList) -> None:
     alarms.raise_(HINT, 1.0)
     alarms.clear("zero drift")
     assert len(alarms) == 0
 
 
-def test_the_first_trip_is_marked_and_stands_above_later_ones(alarms: AlarmList) -> None:
+def test_the_first_trip_is_marked_and_listed_above_later_ones(alarms: AlarmList) -> None:
     alarms.raise_(LATE, 0.5)
     alarms.raise_(TRIP, 1.0)
     alarms.raise_(Cause("drive fault", 1, "wheel"), 1.0)
@@ -64,9 +64,7 @@ def test_the_first_trip_is_marked_and_stands_above_later_ones(alarms: AlarmList)
     ]
 
 
-def test_an_alarm_that_stands_takes_new_figures_without_telling(
-    alarms: AlarmList, told: list[tuple[str, str, str]]
-) -> None:
+def test_an_active_alarm_takes_new_figures_silently(alarms: AlarmList, told: list[tuple[str, str, str]]) -> None:
     alarms.raise_(LATE, 1.0)
     alarms.raise_(Cause("no fresh data", 2, "4 s old"), 2.0)
     assert alarms.listed()[0].text == "4 s old"

@@ -170,7 +170,7 @@ def test_no_control_is_lent_while_something_is_under_way(tmp_path: Path, mode: s
     play(tmp_path, story)
 
 
-def test_no_control_is_lent_before_what_an_order_made_is_known(tmp_path: Path) -> None:
+def test_no_control_is_lent_before_the_result_of_an_order_is_known(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         fake.show(state("OFFLINE"))
         first = await Client.connect(fake.address, name="first", control=True)
@@ -183,7 +183,7 @@ def test_no_control_is_lent_before_what_an_order_made_is_known(tmp_path: Path) -
     play(tmp_path, story)
 
 
-def test_who_asked_for_no_control_is_lent_none(tmp_path: Path) -> None:
+def test_a_client_that_did_not_ask_for_control_is_lent_none(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         fake.show(state("OFFLINE"))
         first = await Client.connect(fake.address, name="first", control=True)
@@ -258,7 +258,7 @@ def test_events_of_another_life_of_the_service_are_not_mistaken_for_missing_ones
     play(tmp_path, story)
 
 
-def test_events_no_longer_kept_are_said_to_be_missing(tmp_path: Path) -> None:
+def test_events_no_longer_kept_are_reported_as_missing(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         for number in range(2500):
             fake.event("step", f"step {number}")
@@ -308,7 +308,7 @@ def test_the_socket_is_its_users_alone(tmp_path: Path) -> None:
     play(tmp_path, story)
 
 
-def test_a_client_that_does_not_read_gets_the_newest_state_and_holds_nobody_up(tmp_path: Path) -> None:
+def test_a_client_that_does_not_read_gets_the_newest_state_and_delays_no_other(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         slow = await Client.connect(fake.address, name="slow")
         slow._connection.transport.pause_reading()  # pyright: ignore[reportPrivateUsage]
@@ -350,7 +350,7 @@ def test_a_client_that_does_not_take_its_events_is_sent_away(tmp_path: Path) -> 
     play(tmp_path, story)
 
 
-def test_one_client_more_than_there_are_places_is_turned_away_and_says_why(tmp_path: Path) -> None:
+def test_one_client_more_than_there_are_places_is_refused_with_a_reason(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         there = [await Client.connect(fake.address) for _ in range(MOST_CLIENTS)]
         with pytest.raises(NoServiceError, match=f"{MOST_CLIENTS} clients"):
@@ -364,7 +364,7 @@ def test_one_client_more_than_there_are_places_is_turned_away_and_says_why(tmp_p
     play(tmp_path, story)
 
 
-def test_connections_that_never_join_keep_nobody_out(tmp_path: Path) -> None:
+def test_connections_that_never_join_keep_no_client_out(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         path = str(tmp_path / "service.sock")
         idle = [await asyncio.open_unix_connection(path) for _ in range(3 * MOST_STRANGERS)]
@@ -391,7 +391,7 @@ def test_a_client_that_talks_without_a_pause_is_read_at_the_rate_it_has(
     play(tmp_path, story)
 
 
-def test_of_what_a_client_that_is_gone_had_left_to_say_stop_alone_is_heard(
+def test_of_the_pending_orders_of_a_gone_client_only_stop_is_obeyed(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     spent: list[int] = []
@@ -471,7 +471,7 @@ async def stop_arrives(fake: FakeService) -> Stop:
 @pytest.mark.parametrize(
     "join", [b'{"type":"join","name":"old","version":1}', b'{"type":"join","name":"old"}'], ids=["version 1", "none"]
 )
-def test_a_client_of_version_1_is_refused_with_the_reason_and_what_to_do(tmp_path: Path, join: bytes) -> None:
+def test_a_client_of_version_1_is_refused_with_the_reason_and_a_remedy(tmp_path: Path, join: bytes) -> None:
     async def story(fake: FakeService) -> None:
         async with await raw(fake) as old:
             await old.send(join, text=True)
@@ -484,7 +484,7 @@ def test_a_client_of_version_1_is_refused_with_the_reason_and_what_to_do(tmp_pat
 
 
 @needs_unix
-def test_a_client_of_a_newer_version_is_told_that_the_service_is_the_older_one(tmp_path: Path) -> None:
+def test_a_client_of_a_newer_version_learns_that_the_service_is_older(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         async with await raw(fake) as new:
             await new.send(b'{"type":"join","name":"new","version":99,"mood":"good"}', text=True)
@@ -533,7 +533,7 @@ def test_a_client_that_finds_no_place_can_stop_the_rig_all_the_same(tmp_path: Pa
 
 @needs_unix
 @pytest.mark.parametrize("more", [b',"fsat":true', b',"fast":"yes"', b',"scope":"all"'])
-def test_a_stop_with_something_that_nobody_understands_is_a_stop(tmp_path: Path, more: bytes) -> None:
+def test_a_stop_with_unknown_data_is_a_stop(tmp_path: Path, more: bytes) -> None:
     async def story(fake: FakeService) -> None:
         async with await raw(fake) as client:
             await client.send(encode(Join("script")), text=True)
@@ -547,7 +547,7 @@ def test_a_stop_with_something_that_nobody_understands_is_a_stop(tmp_path: Path,
     play(tmp_path, story)
 
 
-def test_another_kind_of_rig_is_told_before_its_first_state_and_begins_the_trend_anew(tmp_path: Path) -> None:
+def test_another_kind_of_rig_is_announced_before_its_first_state_and_restarts_the_trend(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         async with await Client.connect(fake.address) as client:
             messages = aiter(client)
@@ -565,7 +565,7 @@ def test_another_kind_of_rig_is_told_before_its_first_state_and_begins_the_trend
     play(tmp_path, story)
 
 
-def test_the_same_tables_told_again_change_nothing(tmp_path: Path) -> None:
+def test_the_same_tables_sent_again_change_nothing(tmp_path: Path) -> None:
     async def story(fake: FakeService) -> None:
         fake.machine(MACHINE)
         async with await Client.connect(fake.address) as client:

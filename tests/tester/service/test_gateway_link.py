@@ -74,7 +74,7 @@ def test_a_path_that_is_no_socket_ends_the_service_with_a_sentence(
 
 
 @posix
-def test_a_gateway_process_that_dies_is_replaced_and_knows_what_was(gateway: GatewayLink) -> None:
+def test_a_gateway_process_that_dies_is_replaced_and_gets_the_earlier_state(gateway: GatewayLink) -> None:
     async def story() -> None:
         client = await connected(gateway)
         process = gateway._process  # pyright: ignore[reportPrivateUsage]
@@ -169,7 +169,7 @@ def test_a_client_that_is_killed_leaves_the_run_alone_and_term_leaves_at_standst
 
 
 @posix
-def test_a_sign_of_life_of_whoever_controls_ends_the_silence(gateway: GatewayLink) -> None:
+def test_a_sign_of_life_of_the_controller_ends_the_silence(gateway: GatewayLink) -> None:
     async def story() -> None:
         client = await connected(gateway)
         assert gateway.silent_s == float("inf")
@@ -187,7 +187,7 @@ def test_a_sign_of_life_of_whoever_controls_ends_the_silence(gateway: GatewayLin
 
 @posix
 @pytest.mark.parametrize("told", [False, True])
-def test_clients_are_told_an_owner_that_died_from_one_that_was_told_to_end(told: bool, tmp_path: Path) -> None:
+def test_clients_can_distinguish_a_dead_owner_from_an_ended_one(told: bool, tmp_path: Path) -> None:
     async def story() -> str:
         gateway = GatewayLink(LinkConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
         gateway.open()
@@ -232,7 +232,7 @@ def test_a_gateway_that_is_started_anew_is_no_death_of_the_service(gateway: Gate
     assert asyncio.run(story()) == ["", ""]
 
 
-def test_a_new_gateway_gets_every_note_again_and_of_what_comes_next_the_newest(tmp_path: Path) -> None:
+def test_a_new_gateway_gets_every_message_again_and_the_newest_forecast(tmp_path: Path) -> None:
     gateway = GatewayLink(LinkConfig(UnixAddress(tmp_path / "service.sock"), tmp_path / CARD, tmp_path, "sim"))
     gateway.notify(notice(1))
     for doing in ("run a", "run b"):

@@ -101,7 +101,7 @@ def test_keys_that_come_too_fast_are_refused(tmp_path: Path) -> None:
     [(Jog("press", 1), "same speed"), (Jog("heat", 1), "wheel turning"), (Jog("heat", -1), "wheel turning")],
     ids=lambda value: value if isinstance(value, str) else f"{value.axis} {value.direction}",
 )
-def test_what_would_harm_is_refused(tmp_path: Path, step: Jog, reason: str) -> None:
+def test_harmful_orders_are_refused(tmp_path: Path, step: Jog, reason: str) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
         yield stage.order(step)
@@ -243,7 +243,7 @@ def test_under_load_wheel_and_belt_keep_turning(tmp_path: Path) -> None:
     play(tmp_path, script)
 
 
-def test_a_tare_tells_the_new_zero(tmp_path: Path) -> None:
+def test_a_tare_reports_the_new_zero(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from armed(stage)
         yield stage.order(Tare())
@@ -452,7 +452,7 @@ def test_it_is_the_last_wheel_of_the_newest_run(tmp_path: Path) -> None:
     assert (found.run, found.wheel.piece, found.wheel.diameter_mm) == ("2024-02-01-new", 2, 85.0)
 
 
-def test_a_run_without_a_wheel_and_one_that_cannot_be_read_are_passed_over(tmp_path: Path) -> None:
+def test_a_run_without_a_wheel_and_an_unreadable_run_are_skipped(tmp_path: Path) -> None:
     a_run(tmp_path, "2024-01-01-old", HERE, WHEEL)
     a_run(tmp_path, "2024-02-01-new", HERE)
     (tmp_path / "2024-03-01-broken").mkdir()

@@ -99,7 +99,7 @@ def test_a_sender_that_is_killed_is_started_again_and_neither_loses_nor_doubles(
     assert len(set(idents)) == 6  # duplicates have one Message-ID
 
 
-def test_what_waits_is_sent_by_the_next_life_of_the_service(
+def test_pending_notices_are_sent_by_the_next_service(
     tmp_path: Path, settings: Path, relay: MailRelay, forwarder: NoticeForwarder, watched: Watched
 ) -> None:
     relay.down = True

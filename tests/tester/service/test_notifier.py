@@ -39,7 +39,7 @@ def notices(stage: Stage) -> list[Notice]:
     return [note for note in stage.told if isinstance(note, Notice)]
 
 
-def test_a_trip_is_a_notice_with_what_the_machine_and_a_person_do(stage: Stage, notifier: Notifier) -> None:
+def test_a_trip_is_a_notice_with_the_actions_of_machine_and_person(stage: Stage, notifier: Notifier) -> None:
     notifier.event("trip", "overload: 900 N above 800 N", "trip")
     (made,) = notices(stage)
     assert (made.cause, made.key, made.run, made.rig) == (NoticeCause.TRIP, "trip overload", "night-1", "rig 2")
@@ -118,7 +118,7 @@ def test_every_note_has_a_number_of_its_own(stage: Stage, notifier: Notifier) ->
     assert len(set(numbers)) == len(numbers) == 9
 
 
-def test_a_run_tells_its_question_what_comes_next_and_its_end(tmp_path: Path) -> None:
+def test_a_run_reports_its_question_its_next_need_and_its_end(tmp_path: Path) -> None:
     two = SHORT.replace('  - compound: "1#"\n', '  - compound: "1#"\n  - compound: "2#"\n')
 
     def script(stage: Stage) -> Script:

@@ -12,7 +12,7 @@ from tester.service.planning import Task, planned
 from tests.tester.kinds.wheel_on_belt.bench import SHORT
 
 
-def test_it_is_what_this_process_would_have_planned(tmp_path: Path) -> None:
+def test_it_equals_the_plan_of_this_process(tmp_path: Path) -> None:
     (tmp_path / "short.yaml").write_text(SHORT)
     task = Task(str(tmp_path / "short.yaml"), "sim", ("sim.noise=0",))
     polls = list[int]()
@@ -29,12 +29,12 @@ def test_it_is_what_this_process_would_have_planned(tmp_path: Path) -> None:
     ), "a part's steps are the plan's own"
 
 
-def test_what_is_wrong_with_a_recipe_is_said(tmp_path: Path) -> None:
+def test_mistakes_in_a_recipe_are_reported(tmp_path: Path) -> None:
     (tmp_path / "bad.yaml").write_text("recipe: [")
     with pytest.raises(CannotStartError, match=r"bad\.yaml:2:1: not YAML"):
         planned(Task(str(tmp_path / "bad.yaml"), "sim"), lambda: "")
 
 
-def test_it_is_given_up_when_somebody_says_so(tmp_path: Path) -> None:
+def test_it_is_cancelled_on_request(tmp_path: Path) -> None:
     with pytest.raises(CannotStartError, match="stopped by me"):
         planned(Task("table2", "sim"), lambda: "stopped by me")

@@ -60,7 +60,9 @@ def test_standing_alarms_are_wrong_and_named() -> None:
         ("incomplete", "", "", None, "incomplete"),
     ],
 )
-def test_how_the_last_run_ended_is_said(status: str, reason: str, latched: str, ok: bool | None, words: str) -> None:
+def test_the_end_of_the_last_run_is_reported(
+    status: str, reason: str, latched: str, ok: bool | None, words: str
+) -> None:
     found = last_run_check(replace(PAST, status=status, reason=reason), latched)
     assert (found.ok, found.text) == (ok, words)
 
@@ -109,7 +111,7 @@ def test_a_simulated_rig_needs_no_certificate() -> None:
     assert calibration_check(CertificatesConfig(), NOW, simulated=True).ok
 
 
-def test_a_date_in_the_rig_file_that_is_none_is_refused_where_it_stands() -> None:
+def test_an_invalid_date_in_the_rig_file_is_refused_with_its_position() -> None:
     with pytest.raises(InvalidSource, match="expected a date such as 2027-01-31"):
         load_rig("sim", ('calibration.load_cell="31.1.2027"',))
 

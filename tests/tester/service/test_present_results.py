@@ -35,7 +35,7 @@ def test_values_are_those_of_the_table(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("name", ["", "none", "../one", ".", 7, None])
-def test_what_is_no_run_of_the_folder_is_refused(tmp_path: Path, name: object) -> None:
+def test_a_name_that_is_no_run_of_the_folder_is_refused(tmp_path: Path, name: object) -> None:
     made_run(tmp_path / "one", DESIGN)
     with pytest.raises(RefusedQuestionError):
         PresentResults(tmp_path / "runs").answer(name)  # type: ignore[arg-type]

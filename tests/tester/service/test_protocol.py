@@ -99,7 +99,7 @@ def test_a_join_comes_back_as_it_was() -> None:
         (b"null", "object"),
     ],
 )
-def test_a_wrong_message_is_refused_with_what_is_wrong(text: bytes, said: str) -> None:
+def test_a_wrong_message_is_refused_with_the_mistake(text: bytes, said: str) -> None:
     with pytest.raises(BadMessageError, match=said):
         to_server(text)
 

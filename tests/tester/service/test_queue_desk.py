@@ -131,7 +131,7 @@ def test_nothing_begins_before_a_person_starts_the_queue(tmp_path: Path) -> None
     assert stage.queues[-1].state == "standing: not started yet"
 
 
-def test_after_a_restart_the_queue_stands(tmp_path: Path) -> None:
+def test_after_a_restart_the_queue_is_stopped(tmp_path: Path) -> None:
     def first(stage: Stage) -> Script:
         yield from added(stage, ADD)
         yield stage.order(QueueStart())
@@ -267,7 +267,7 @@ def test_a_changed_rig_makes_the_item_wait_for_a_person_who_agrees(tmp_path: Pat
     assert item_of(stage, 1).end is End.DONE
 
 
-def test_a_person_cannot_agree_to_what_is_not_known(tmp_path: Path) -> None:
+def test_a_person_cannot_agree_to_unknown_evidence(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from added(stage, ADD)
         yield stage.order(QueueStart(agree=(1,)))
@@ -336,7 +336,7 @@ def unanswered(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, *adds: QueueAdd)
     return play(tmp_path, script)
 
 
-def test_a_question_without_an_answer_stops_its_item_and_the_queue_stands(
+def test_a_question_without_an_answer_stops_its_item_and_the_queue(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     stage = unanswered(tmp_path, monkeypatch, ASKS, ADD)
@@ -352,7 +352,7 @@ def test_a_wheel_that_was_never_mounted_keeps_the_queue_from_going_on(
     assert states(stage.queues[-1]) == [(1, "stopped"), (2, "waiting")]
 
 
-def test_an_answer_in_time_lets_the_item_go_on(tmp_path: Path) -> None:
+def test_an_answer_in_time_lets_the_item_continue(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from added(stage, ASKS)
         yield stage.order(QueueStart())

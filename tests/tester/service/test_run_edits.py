@@ -65,7 +65,7 @@ def folder_of(stage: Stage) -> Path:
     return Path(run.folder)
 
 
-def test_a_note_and_an_exclusion_are_on_record_with_who_and_in_the_tables(tmp_path: Path) -> None:
+def test_a_note_and_an_exclusion_are_on_record_with_the_person_and_in_the_tables(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from held_after_two_repeats(stage)
         name = name_of(stage)
@@ -91,7 +91,7 @@ def test_a_note_and_an_exclusion_are_on_record_with_who_and_in_the_tables(tmp_pa
     assert verify(folder).problems == ()
 
 
-def test_a_repeat_may_be_included_again_while_the_run_goes_on(tmp_path: Path) -> None:
+def test_a_repeat_may_be_included_again_while_the_run_continues(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield from held_after_two_repeats(stage)
         name = name_of(stage)
@@ -108,7 +108,7 @@ def test_a_repeat_may_be_included_again_while_the_run_goes_on(tmp_path: Path) ->
     assert verify(folder_of(stage)).problems == ()
 
 
-def test_what_cannot_be_edited_is_refused_with_its_reason_and_nothing_is_recorded(tmp_path: Path) -> None:
+def test_impossible_edits_are_refused_with_a_reason_and_not_recorded(tmp_path: Path) -> None:
     why: dict[str, str] = {}
 
     def script(stage: Stage) -> Script:

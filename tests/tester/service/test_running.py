@@ -10,7 +10,7 @@ from tester.machine.tickers import TickStatistics
 from tester.service.running import Punctuality, aside
 
 
-def test_lateness_is_told_for_a_second_or_two_and_its_worst_for_the_whole_run() -> None:
+def test_lateness_is_reported_for_a_second_or_two_and_its_worst_for_the_whole_run() -> None:
     statistics, punctual = TickStatistics(), Punctuality()
     told: list[tuple[float, float]] = []
     for number in range(8):
@@ -22,7 +22,7 @@ def test_lateness_is_told_for_a_second_or_two_and_its_worst_for_the_whole_run() 
     assert told[6:] == [(0.001, 0.004)] * 2
 
 
-def test_a_run_that_begins_after_a_pause_forgets_what_was_before() -> None:
+def test_a_run_that_begins_after_a_pause_forgets_earlier_scans() -> None:
     statistics, punctual = TickStatistics(), Punctuality()
     statistics.note(0.1)
     punctual.look(statistics, 100.0)
@@ -41,6 +41,6 @@ def test_clients_are_looked_after_until_the_work_is_done() -> None:
     assert len(looks) >= 3 and set(looks) == {current_thread().name}
 
 
-def test_what_goes_wrong_in_the_work_is_raised_here() -> None:
+def test_errors_of_the_work_are_raised_here() -> None:
     with pytest.raises(ZeroDivisionError):
         aside(lambda: 1 // 0, lambda: None)

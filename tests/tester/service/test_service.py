@@ -106,7 +106,7 @@ def test_devices_and_buses_are_shown(finished: Stage) -> None:
     assert counting.buses[0].load_percent is not None and 10.0 < counting.buses[0].load_percent < 40.0
 
 
-def test_what_is_left_shrinks_and_steps_get_their_measured_durations(finished: Stage) -> None:
+def test_the_time_left_shrinks_and_steps_get_their_measured_durations(finished: Stage) -> None:
     left = [view.progress.left_s for view in finished.views if view.mode == "RUN"]
     assert left[-1] is not None and left[0] is not None and left[-1] < left[0]
     last = [plan for plan in finished.plans if plan is not None][-1]
@@ -147,7 +147,7 @@ def test_a_hold_stops_the_share_and_the_time_left(tmp_path: Path) -> None:
     assert len({progress.share for progress in held}) == 1 and len({progress.left_s for progress in held}) == 1
 
 
-def test_frames_of_every_bus_are_told_in_both_directions(finished: Stage) -> None:
+def test_frames_of_every_bus_are_shown_in_both_directions(finished: Stage) -> None:
     frames = [frame for message in finished.told_frames for frame in message.frames]
     assert {frame.bus for frame in frames} >= {"can", "load_cell"}
     assert {frame.sent for frame in frames} == {True, False}
@@ -202,7 +202,7 @@ def test_a_stop_leaves_the_second_specimen_undone(tmp_path: Path) -> None:
     assert {view.run.compound for view in stage.views if view.run is not None} <= {"", "1#"}
 
 
-def test_stop_from_its_own_lane_stops_a_run_before_anything_else_is_heard(tmp_path: Path) -> None:
+def test_stop_from_its_own_lane_stops_a_run_before_any_other_order_is_read(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
         yield from stage.until(running)
@@ -320,7 +320,7 @@ def test_a_second_run_is_refused_while_one_is_under_way(tmp_path: Path) -> None:
     ],
     ids=lambda value: value if isinstance(value, str) else value.command,
 )
-def test_what_makes_no_sense_now_is_refused_and_says_why(
+def test_orders_without_sense_in_this_state_are_refused_with_a_reason(
     tmp_path: Path,
     action: Hold | Release | Acknowledge | Answer | Jog | Tare | Arm | ResumeRun | RunRecipe,
     reason: str,
@@ -461,7 +461,7 @@ def test_stop_ends_a_tripped_run_whose_cause_stays_and_the_rig_stays_latched(tmp
     assert stage.views[-1].alarms == ()
 
 
-def test_a_held_run_goes_on_when_it_is_released(tmp_path: Path) -> None:
+def test_a_held_run_continues_when_it_is_released(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
         yield from stage.until(lambda view: view.mode == "RUN" and view.progress.repeat == 1)
@@ -570,7 +570,7 @@ def test_a_run_that_was_resumed_to_its_end_is_interrupted_no_longer(tmp_path: Pa
     assert last.run is not None and (last.run.outcome, last.interrupted) == ("done", ())
 
 
-def test_a_run_that_somebody_is_at_work_on_is_not_interrupted(tmp_path: Path) -> None:
+def test_a_run_in_use_by_another_process_is_not_marked_interrupted(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield stage.order(RUN)
         yield from stage.until(running)
@@ -610,7 +610,7 @@ def test_locks_of_the_run_are_let_go_of(tmp_path: Path) -> None:
         use.lock_file("run", Path(run.folder) / RUN_LOCK, "", lasting=False)
 
 
-def test_commands_are_recorded_with_who_the_system_says_gave_them(tmp_path: Path) -> None:
+def test_commands_are_recorded_with_the_system_user_who_gave_them(tmp_path: Path) -> None:
     def script(stage: Stage) -> Script:
         yield replace(stage.order(RUN), peer="user id 1000")
         yield from stage.until(running)

@@ -67,7 +67,7 @@ def test_a_gateway_that_does_not_read_is_given_up(
             end.send(100_000 * b"x")
 
 
-def test_nobody_can_hold_up_a_scan_by_talking(pair: tuple[OwnerEnd, socket.socket]) -> None:
+def test_no_client_can_delay_a_scan_by_sending(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
     order = FROM_GATEWAY.dump_json(Order(1, "x", 1, Stop())) + b"\n"
     theirs.sendall(50 * order)
@@ -93,13 +93,13 @@ def test_the_end_of_the_gateway_is_noticed(pair: tuple[OwnerEnd, socket.socket])
         end.receive()
 
 
-def test_the_owner_says_how_much_it_has_looked_at(pair: tuple[OwnerEnd, socket.socket]) -> None:
+def test_the_owner_reports_how_much_it_has_read(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
     theirs.sendall(3 * (FROM_GATEWAY.dump_json(Order(1, "x", 1, Stop())) + b"\n"))
     assert len(end.receive()) == 3 and theirs.recv(100) == b"k3\n"
 
 
-def test_a_gateway_that_says_nonsense_is_given_up(pair: tuple[OwnerEnd, socket.socket]) -> None:
+def test_a_gateway_that_sends_nonsense_is_dropped(pair: tuple[OwnerEnd, socket.socket]) -> None:
     end, theirs = pair
     theirs.sendall(b"what?\n")
     with pytest.raises(LinkLost, match="an unknown message"):
@@ -150,7 +150,7 @@ def test_a_client_that_stops_without_end_has_one_stop_waiting_and_a_fast_one_sta
     assert said[LINES_AT_ONCE:] == [first]
 
 
-def test_a_client_whose_orders_wait_is_told_so() -> None:
+def test_a_client_with_waiting_orders_is_informed() -> None:
     end, _ = gateway_end()
     taken = [end.order(Order(1, "x", number, Hold())) for number in range(LINES_AT_ONCE + ORDERS_WAIT + 1)]
     assert taken == [True] * (LINES_AT_ONCE + ORDERS_WAIT) + [False]

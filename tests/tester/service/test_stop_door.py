@@ -124,11 +124,11 @@ def test_a_process_with_too_many_connections_loses_its_oldest(bench: Bench) -> N
 
 
 @pytest.mark.parametrize("text", ["go away\n", "GET / HTTP/1.1\r\n", "x" * 600], ids=["word", "http", "endless"])
-def test_who_says_anything_else_is_let_go(bench: Bench, text: str) -> None:
+def test_a_caller_that_sends_anything_else_is_hung_up(bench: Bench, text: str) -> None:
     assert heard(bench.call(text)) == b"" and bench.lines() == []
 
 
-def test_a_caller_that_hangs_up_at_once_has_been_heard(bench: Bench) -> None:
+def test_a_caller_that_hangs_up_at_once_is_still_obeyed(bench: Bench) -> None:
     caller = socket.socket(socket.AF_UNIX, socket.SOCK_STREAM)
     caller.connect(str(bench.path))
     caller.sendall(b"stop me\n")

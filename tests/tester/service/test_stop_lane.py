@@ -41,14 +41,14 @@ def test_while_nothing_ticks_stop_is_answered_at_once_and_kept(lane: StopLane, a
     assert lane.wanted and lane.taken() == [StopWish(ME, True, 0)] and not lane.wanted
 
 
-def test_of_stops_that_nobody_has_looked_at_two_are_kept_at_most(lane: StopLane, address: Address) -> None:
+def test_at_most_two_unread_stops_are_kept(lane: StopLane, address: Address) -> None:
     with StopCall(address, "me") as call:
         for fast in (False, False, True, False, True):
             call.stop(fast=fast)
     assert [wish.fast for wish in lane.taken()] == [False, True]
 
 
-def test_while_something_ticks_the_one_who_ticks_answers(lane: StopLane, address: Address) -> None:
+def test_while_the_owner_ticks_it_answers_itself(lane: StopLane, address: Address) -> None:
     lane.begin_ticking()
     with StopCall(address, "me") as call:
         asking = Thread(target=call.stop)
@@ -62,7 +62,7 @@ def test_while_something_ticks_the_one_who_ticks_answers(lane: StopLane, address
     lane.end_ticking()
 
 
-def test_who_waits_when_the_run_ends_is_answered(lane: StopLane, address: Address) -> None:
+def test_a_caller_waiting_at_the_end_of_the_run_is_answered(lane: StopLane, address: Address) -> None:
     lane.begin_ticking()
     with StopCall(address, "me") as call:
         asking = Thread(target=call.stop)
@@ -111,7 +111,7 @@ def test_tcp_has_a_port_of_its_own_that_needs_the_token() -> None:
         lane.close()
 
 
-def test_where_there_is_no_service_it_says_so(tmp_path: Path) -> None:
+def test_a_missing_service_is_reported(tmp_path: Path) -> None:
     with StopCall(UnixAddress(tmp_path / "none"), "me") as call, pytest.raises(NotTakenError):
         call.stop()
 

@@ -109,7 +109,7 @@ def test_another_question_has_its_own_time(scene: Callable[..., Scene]) -> None:
     assert one.stops == []
 
 
-def test_the_queue_goes_on_where_the_next_item_needs_no_person(scene: Callable[..., Scene]) -> None:
+def test_the_queue_continues_where_the_next_item_needs_no_person(scene: Callable[..., Scene]) -> None:
     one = scene(Unanswered(600.0, skip=True), item(2))
     for now_s in (0.0, 600.0):
         one.look_at(now_s)
@@ -118,7 +118,7 @@ def test_the_queue_goes_on_where_the_next_item_needs_no_person(scene: Callable[.
     assert one.stops == [why]
 
 
-def test_the_queue_stands_where_the_next_item_needs_a_person(scene: Callable[..., Scene]) -> None:
+def test_the_queue_stops_where_the_next_item_needs_a_person(scene: Callable[..., Scene]) -> None:
     one = scene(Unanswered(600.0, skip=True), item(2, asks=MOUNT))
     for now_s in (0.0, 600.0):
         one.look_at(now_s)

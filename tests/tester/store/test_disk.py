@@ -17,14 +17,14 @@ def hanging(answer: Event) -> Callable[[Path], int]:
     return ask
 
 
-def test_the_room_is_told_by_a_thread(tmp_path: Path) -> None:
+def test_a_thread_reports_the_free_space(tmp_path: Path) -> None:
     room = FreeRoom(tmp_path, lambda _: 5)
     room.look()
     room.wait(10.0)
     assert room.free == 5 and not room.hangs
 
 
-def test_a_disk_that_hangs_keeps_nobody_waiting_and_is_told(tmp_path: Path) -> None:
+def test_a_hanging_disk_blocks_no_caller_and_is_reported(tmp_path: Path) -> None:
     answer = Event()
     room = FreeRoom(tmp_path, hanging(answer))
     for _ in range(3):
@@ -37,7 +37,7 @@ def test_a_disk_that_hangs_keeps_nobody_waiting_and_is_told(tmp_path: Path) -> N
     assert not room.hangs and room.free == 7
 
 
-def test_a_disk_that_answers_with_an_error_tells_nothing(tmp_path: Path) -> None:
+def test_a_disk_that_answers_with_an_error_gives_no_value(tmp_path: Path) -> None:
     def gone(_folder: Path) -> int:
         raise OSError("stale file handle")
 
@@ -47,7 +47,7 @@ def test_a_disk_that_answers_with_an_error_tells_nothing(tmp_path: Path) -> None
     assert room.free is None and not room.hangs
 
 
-def test_the_working_folder_stands_in_for_one_that_is_not_there_yet(tmp_path: Path) -> None:
+def test_the_working_folder_replaces_one_that_does_not_exist_yet(tmp_path: Path) -> None:
     asked: list[Path] = []
 
     def ask(folder: Path) -> int:

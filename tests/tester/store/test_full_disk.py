@@ -73,7 +73,7 @@ def ended(folder: Path) -> tuple[str, str, int, int]:
         return run.status, run.reason, len(reader.repeats()), rows
 
 
-def test_the_room_that_was_kept_takes_what_the_run_still_has_to_say(disk: Path) -> None:
+def test_the_reserved_space_takes_the_last_entries_of_the_run(disk: Path) -> None:
     clock = Clock()
     writer = begun(disk, clock, reserve=800_000)
     assert (disk / f"run.db{RESERVE}").stat().st_size == 800_000
@@ -110,7 +110,7 @@ def test_without_that_room_everything_is_written_once_room_returns(disk: Path) -
     assert ended(disk) == ("stopped", "full", count, 500 * count)
 
 
-def test_a_run_that_ends_with_the_disk_still_full_says_that_something_is_lost(disk: Path) -> None:
+def test_a_run_that_ends_with_the_disk_still_full_reports_a_loss(disk: Path) -> None:
     writer = begun(disk, Clock())
     fill(disk)
     count = measure(writer, 20)

@@ -94,7 +94,7 @@ def test_every_table_of_the_schema_is_known() -> None:
 
 
 @pytest.mark.parametrize("table", TABLES)
-def test_what_a_table_is_said_to_have_is_in_it(table: str) -> None:
+def test_a_table_has_its_stated_columns(table: str) -> None:
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as database:
         migrate(database)
         columns = {row[1] for row in database.execute(f"PRAGMA table_info({table})")}
@@ -150,7 +150,7 @@ def test_the_first_part_s_samples_are_copied_byte_for_byte(run: Path) -> None:
     assert rows(merge(run), sql)[: len(first)] == first
 
 
-def test_the_journal_goes_on(merged: RunReader) -> None:
+def test_the_journal_continues(merged: RunReader) -> None:
     found = [(e.sequence, e.t_s, e.text) for e in merged.events()]
     assert found == [(1, 1.0, "install wheel 1"), (2, FIRST_S + 1.0, "install wheel 2")]
 
@@ -172,7 +172,7 @@ def test_wheels_trips_prompts_tares_and_devices_of_all_parts_are_there(run: Path
     assert rows(run, "SELECT t_s FROM device_parameter") == [(0.5,), (FIRST_S + 0.5,)]
 
 
-def test_merging_again_changes_nothing_and_the_chain_tells_it(run: Path) -> None:
+def test_merging_again_changes_nothing_and_the_chain_shows_it(run: Path) -> None:
     merge(run)
     tables = TABLES.keys() | HEADER - {"chain"}
     before = {table: rows(run, f"SELECT * FROM {table}") for table in tables}
@@ -203,7 +203,7 @@ def test_dropped_samples_are_counted_over_all_parts(run: Path) -> None:
         assert reader.run().overruns == 3
 
 
-def test_what_a_person_has_said_of_a_repeat_survives_a_merge(tmp_path: Path) -> None:
+def test_an_exclusion_of_a_repeat_survives_a_merge(tmp_path: Path) -> None:
     folder = small_run(tmp_path / "run")
     add_exclusion(folder, StoredExclusion(0, 1, 2, 1, 1, "debris", "ada", "2024-02-21T15:00:00.000Z", "0.1.0", ""))
     with Merge(folder):

@@ -50,7 +50,7 @@ def test_a_database_of_another_version_is_refused_with_both_versions(database: s
         migrate(database)
 
 
-def test_somebody_elses_database_is_refused() -> None:
+def test_a_foreign_database_is_refused() -> None:
     connection = sqlite3.connect(":memory:")
     connection.execute("CREATE TABLE bookmarks (url TEXT)")
     with pytest.raises(StoreError, match="not made by"):

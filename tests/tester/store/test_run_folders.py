@@ -60,7 +60,7 @@ def test_latest_where_no_name_has_a_date_goes_by_the_records(tmp_path: Path) -> 
     assert find_run("latest", tmp_path).name == "another"
 
 
-def test_latest_where_there_is_no_run_says_so(tmp_path: Path) -> None:
+def test_latest_without_a_run_is_reported(tmp_path: Path) -> None:
     with pytest.raises(StoreError, match="there is no run under"):
         find_run("latest", tmp_path)
 
@@ -125,7 +125,7 @@ def test_every_outcome_of_a_run_is_in_the_table() -> None:
     assert {status for row in TABLE.values() for status in row} == set(RunStatus) - {R.UNREADABLE}
 
 
-def test_what_may_go_on() -> None:
+def test_runs_that_may_be_resumed() -> None:
     assert {status for status in RunStatus if status.can_resume} == {
         R.INTERRUPTED, R.STOPPED, R.TRIPPED, R.FAILED, R.UNREACHABLE,
     }  # fmt: skip

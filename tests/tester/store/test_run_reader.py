@@ -114,7 +114,7 @@ def test_samples_of_a_condition_are_those_of_its_repeats(folder: Path) -> None:
         assert len(reader.samples()["time_s"]) == 30
 
 
-def test_samples_of_what_was_not_measured_are_empty(folder: Path) -> None:
+def test_samples_of_unmeasured_repeats_are_empty(folder: Path) -> None:
     with RunReader(folder) as reader:
         assert len(reader.samples(1, 9)["time_s"]) == 0
 
@@ -139,7 +139,7 @@ def test_sample_blocks_come_in_order_of_time(folder: Path) -> None:
     assert len(times) == 30
 
 
-def test_an_open_run_tells_the_rig_time_of_the_last_record(tmp_path: Path) -> None:
+def test_an_open_run_has_the_rig_time_of_the_last_record(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     writer.sample(row(77.5))
@@ -237,7 +237,7 @@ def test_a_name_with_spaces_and_marks_is_just_a_name(tmp_path: Path) -> None:
         assert reader.run().status == "done"
 
 
-def test_a_record_says_its_own_channels(tmp_path: Path) -> None:
+def test_a_record_states_its_own_channels(tmp_path: Path) -> None:
     with RunReader(small_run(tmp_path / "run")) as reader:
         found = reader.quantities()
     assert found.channels == QUANTITIES.channels

@@ -26,7 +26,7 @@ def test_it_is_known_of_each_repeat_and_of_the_last_state(tmp_path: Path) -> Non
     assert not found.problems
 
 
-def test_every_surface_has_its_own_travel_and_the_last_state_is_that_of_the_one_that_is_on(tmp_path: Path) -> None:
+def test_every_surface_has_its_own_travel_and_the_last_state_is_that_of_the_mounted_one(tmp_path: Path) -> None:
     writer = open_writer(tmp_path)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     writer.piece_mounted(PIECE)

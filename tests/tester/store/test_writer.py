@@ -69,7 +69,7 @@ def test_the_file_is_written_with_full_synchronisation_and_a_log(tmp_path: Path)
     writer.close()
 
 
-def test_a_closed_file_stands_alone(tmp_path: Path) -> None:
+def test_a_closed_file_is_complete_by_itself(tmp_path: Path) -> None:
     small_run(tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["run.db"]
 
@@ -100,7 +100,7 @@ def test_samples_wait_for_the_second_to_end(tmp_path: Path) -> None:
     writer.close()
 
 
-def test_an_alarm_is_committed_at_once_with_what_came_before(tmp_path: Path) -> None:
+def test_an_alarm_is_committed_at_once_with_earlier_rows(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     writer.event(1.0, "step", "heating")
     assert count(tmp_path, "SELECT count(*) FROM event") == 0
@@ -110,7 +110,7 @@ def test_an_alarm_is_committed_at_once_with_what_came_before(tmp_path: Path) -> 
 
 
 @pytest.mark.parametrize("verb", ["trip", "flush", "end_condition", "finish", "wheel"])
-def test_what_must_not_wait_is_committed_at_once(tmp_path: Path, verb: str) -> None:
+def test_urgent_rows_are_committed_at_once(tmp_path: Path, verb: str) -> None:
     writer = begun(tmp_path)
     writer.event(1.0, "step", "heating")
     if verb == "trip":
@@ -189,7 +189,7 @@ def test_text_that_no_file_can_hold_fails_the_writer(tmp_path: Path) -> None:
     writer.close()
 
 
-def test_a_full_disk_is_told_and_keeps_what_was_committed(tmp_path: Path) -> None:
+def test_a_full_disk_is_reported_and_keeps_committed_rows(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     done = writer.commit_repeat(writer.begin_repeat(1, 1, 1), result())
     limit_pages(writer, setting(writer, "page_count"))
@@ -204,7 +204,7 @@ def test_a_full_disk_is_told_and_keeps_what_was_committed(tmp_path: Path) -> Non
     assert count(tmp_path, "SELECT count(*) FROM repeat WHERE status = 'valid'") == 1
 
 
-def test_what_a_full_disk_refused_is_written_when_there_is_room_at_the_end(tmp_path: Path) -> None:
+def test_rows_refused_by_a_full_disk_are_written_when_there_is_room_at_the_end(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     limit_pages(writer, setting(writer, "page_count"))
     for i in range(2000):
@@ -258,7 +258,7 @@ def test_a_lossless_writer_that_fails_does_not_wait_for_ever(tmp_path: Path) -> 
     writer.close()
 
 
-def test_the_thread_writes_what_the_scan_appends(tmp_path: Path) -> None:
+def test_the_thread_writes_rows_appended_by_the_scan(tmp_path: Path) -> None:
     writer = open_writer(tmp_path, synchronous=False)
     writer.begin_run(RUN, SPECIMENS, CONDITIONS)
     for i in range(LOSSLESS_LIMIT + 100):
@@ -269,7 +269,7 @@ def test_the_thread_writes_what_the_scan_appends(tmp_path: Path) -> None:
     assert writer.failed is None
 
 
-def test_closing_while_somebody_reads_keeps_everything(tmp_path: Path) -> None:
+def test_closing_beside_a_reader_keeps_everything(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     writer.commit_repeat(writer.begin_repeat(1, 1, 1), result())
     with RunReader(tmp_path) as reader:
@@ -289,7 +289,7 @@ def test_closing_twice_is_harmless(tmp_path: Path) -> None:
         assert reader.run().status
 
 
-def test_a_run_that_goes_on_keeps_counting_and_voids_what_was_cut_off(tmp_path: Path) -> None:
+def test_a_resumed_run_keeps_counting_and_voids_interrupted_repeats(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     writer.commit_repeat(writer.begin_repeat(1, 1, 1), result())
     writer.begin_repeat(1, 2, 1)
@@ -305,7 +305,7 @@ def test_a_run_that_goes_on_keeps_counting_and_voids_what_was_cut_off(tmp_path: 
         assert [event.sequence for event in reader.events()] == [1, 2]
 
 
-def test_a_file_of_somebody_else_is_refused_and_left_as_it_is(tmp_path: Path) -> None:
+def test_a_foreign_file_is_refused_and_left_unchanged(tmp_path: Path) -> None:
     path = tmp_path / "run.db"
     connection = sqlite3.connect(path)
     connection.execute("CREATE TABLE bookmarks (url TEXT)")
@@ -393,7 +393,7 @@ def test_a_committed_repeat_survives_a_kill(tmp_path: Path) -> None:
             assert repeat.result == replace(result(), status=RepeatStatus.VALID)
 
 
-def test_what_a_full_disk_refused_is_written_a_second_later_when_there_is_room(tmp_path: Path) -> None:
+def test_rows_refused_by_a_full_disk_are_written_a_second_later_when_there_is_room(tmp_path: Path) -> None:
     clock = Clock()
     writer = begun(tmp_path, clock)
     limit_pages(writer, setting(writer, "page_count"))
@@ -412,7 +412,7 @@ def test_what_a_full_disk_refused_is_written_a_second_later_when_there_is_room(t
     writer.close()
 
 
-def test_rig_times_of_a_run_that_goes_on_count_from_its_origin(tmp_path: Path) -> None:
+def test_rig_times_of_a_resumed_run_count_from_its_origin(tmp_path: Path) -> None:
     writer = begun(tmp_path)
     writer.begin_session(SessionInfo(2, 1000.0, "", "", 0, "", "", "", ""))
     key = writer.begin_repeat(1, 1, 2, 5.0)

@@ -12,17 +12,17 @@ from tester.tui.widgets.values_panel import bar, beyond
 from tests.tester.service.views import HOSTILE, value
 
 
-def test_what_cannot_be_seen_is_replaced_one_for_one() -> None:
+def test_invisible_characters_are_replaced_one_for_one() -> None:
     assert clean(HOSTILE) == "[/x] [bold]�[31m�$(rm) ' \" <b> �"
     assert len(clean("a\x1b\u202eb\tc")) == 6
 
 
-def test_a_help_text_fills_its_lines_and_hangs_what_a_key_does_beside_it() -> None:
+def test_a_help_text_fills_its_lines_and_indents_the_action_of_a_key() -> None:
     text = "One line of a\nparagraph.\n\nspace  HOLD: lift and wait\nq      leave\n"
     assert reflow(text, 18) == "One line of a\nparagraph.\n\nspace  HOLD: lift\n       and wait\nq      leave"
 
 
-def test_fit_marks_what_is_missing() -> None:
+def test_fit_marks_the_cut() -> None:
     assert (fit("abcdef", 6), fit("abcdef", 4), fit("abcdef", 0)) == ("abcdef", "abc…", "")
 
 
@@ -69,7 +69,7 @@ def test_a_setpoint_is_drawn_where_there_is_no_data() -> None:
     assert canvas.lines() == ["   ", "--*", "   "]
 
 
-def test_a_scatter_says_its_ends_and_marks_several_points_as_one() -> None:
+def test_a_scatter_labels_its_ends_and_marks_several_points_as_one() -> None:
     lines = scatter([Point(100.0, 0.8, "1"), Point(200.0, 0.7, "1"), Point(200.0, 0.7, "2")], 30, 6)
     assert "100" in lines[-1] and "200" in lines[-1]
     assert sum(line.count("+") for line in lines) == 1

@@ -26,7 +26,7 @@ async def lose(on: Stage, *, ended: bool) -> None:
     await on.pilot.pause()
 
 
-def test_a_service_that_died_is_named_with_what_the_devices_do_and_what_to_do(tmp_path: Path) -> None:
+def test_a_dead_service_is_reported_with_the_reaction_of_the_devices_and_a_remedy(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         await lose(on, ended=False)
         text = " ".join(on.text().replace("│", " ").split())
@@ -37,7 +37,7 @@ def test_a_service_that_died_is_named_with_what_the_devices_do_and_what_to_do(tm
     play(act, tmp_path, (110, 40))
 
 
-def test_stop_after_a_death_says_so_and_names_no_errno(tmp_path: Path) -> None:
+def test_stop_after_a_death_reports_it_and_names_no_errno(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         await lose(on, ended=False)
         await on.pilot.press("f12")
@@ -48,7 +48,7 @@ def test_stop_after_a_death_says_so_and_names_no_errno(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("ended", [False, True])
-def test_leaving_claims_no_run_that_goes_on(ended: bool, tmp_path: Path) -> None:
+def test_leaving_claims_no_continuing_run(ended: bool, tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         await lose(on, ended=ended)
         on.app.action_detach()
@@ -58,7 +58,7 @@ def test_leaving_claims_no_run_that_goes_on(ended: bool, tmp_path: Path) -> None
     play(act, tmp_path)
 
 
-def test_a_service_that_was_told_to_end_is_no_death(tmp_path: Path) -> None:
+def test_an_ended_service_is_no_death(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         await lose(on, ended=True)
         assert "the service has ended" in on.line(1) and "died" not in on.text()

@@ -70,7 +70,7 @@ def test_where_nothing_runs_there_is_nothing_to_abort(house: House) -> None:
     house.play(act)
 
 
-def test_after_a_stop_the_runs_that_are_not_over_are_listed_and_the_chosen_one_goes_on(house: House) -> None:
+def test_after_a_stop_unfinished_runs_are_listed_and_the_chosen_one_resumes(house: House) -> None:
     async def act(on: Stage) -> None:
         ended = {"conditions": 2, "repeats": 3, "repeats_planned": 6}
         on.queries.stored = [
@@ -147,7 +147,7 @@ def test_stray_keys_answer_no_question(keys: list[str], house: House) -> None:
     house.play(act)
 
 
-def test_what_was_typed_before_the_question_is_seen_does_not_count(house: House) -> None:
+def test_keys_typed_before_the_question_is_seen_do_not_count(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state()))
         await on.pilot.press("f3", "enter", "right", "enter")
@@ -157,7 +157,7 @@ def test_what_was_typed_before_the_question_is_seen_does_not_count(house: House)
     house.play(act)
 
 
-def test_hold_works_while_a_question_stands(house: House) -> None:
+def test_hold_works_while_a_question_is_open(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_prompt(a_state()))
         await on.pilot.press("f3", "enter", "space")
@@ -347,7 +347,7 @@ def test_a_screen_that_finds_a_run_under_way_shows_it(tmp_path: Path) -> None:
     play(act, tmp_path)
 
 
-def test_a_refused_acknowledgement_is_said_with_the_way_out(tmp_path: Path) -> None:
+def test_a_refused_acknowledgement_is_reported_with_the_way_out(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         on.fake.event("acknowledgement", "refused, still there: drive fault")
         await on.until(lambda: "drive fault; F12 ends the run" in on.text(), "the way out is shown")
@@ -356,7 +356,7 @@ def test_a_refused_acknowledgement_is_said_with_the_way_out(tmp_path: Path) -> N
     play(act, tmp_path)
 
 
-def test_a_lost_service_is_said_and_found_again(tmp_path: Path) -> None:
+def test_a_lost_service_is_reported_and_found_again(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         client = on.app.link.client if on.app.link is not None else None
         assert client is not None
@@ -378,7 +378,7 @@ def test_a_refusal_is_shown_with_its_reason(house: House) -> None:
     house.play(act)
 
 
-def test_commissioning_is_offered_only_while_nobody_has_the_rig(house: House) -> None:
+def test_commissioning_is_offered_only_while_the_rig_is_free(house: House) -> None:
     async def act(on: Stage) -> None:
         await on.pilot.press("f4", "c")
         await on.until(lambda: "commissioning begins while no run" in on.text(), "why not is said")

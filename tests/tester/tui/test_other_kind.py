@@ -53,7 +53,7 @@ def test_the_run_screen_shows_its_values_in_their_order_and_its_trends(tmp_path:
     play(scene, tmp_path, (120, 40))
 
 
-def test_what_may_be_moved_by_hand_is_what_the_machine_has(tmp_path: Path) -> None:
+def test_only_axes_of_the_machine_may_be_moved_by_hand(tmp_path: Path) -> None:
     async def scene(on: Stage) -> None:
         await on.pilot.press("f4")
         await shown(on, armed=True)

@@ -56,7 +56,7 @@ def test_a_service_that_no_screen_started_is_not_ended(place: Path, asked: list[
     assert not asked
 
 
-def test_what_a_screen_starts_is_written_down(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_process_started_by_a_screen_is_recorded(place: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     class Started:
         pid = 4711
 

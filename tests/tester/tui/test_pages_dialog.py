@@ -80,7 +80,7 @@ def test_a_screen_for_everybody_shows_no_codes(tmp_path: Path) -> None:
     asyncio.run(story())
 
 
-def test_without_a_page_the_dialog_says_how_to_open_one() -> None:
+def test_without_a_page_the_dialog_shows_how_to_open_one() -> None:
     assert clean_rows(None) == NO_PAGE
 
 

@@ -113,9 +113,7 @@ def test_enter_alone_adds_it_once_without_a_limit(tmp_path: Path) -> None:
         (["u", "enter"], "expected a time of day such as 18:00", "until"),
     ],
 )
-def test_what_is_not_valid_is_named_and_nothing_is_ordered(
-    keys: list[str], said: str, where: str, tmp_path: Path
-) -> None:
+def test_invalid_input_is_named_and_nothing_is_ordered(keys: list[str], said: str, where: str, tmp_path: Path) -> None:
     async def script(on: Stage) -> None:
         await at_queue(on)
         await on.pilot.press(*keys)

@@ -70,7 +70,7 @@ def test_keys_move_in_time_and_not_beyond_the_run(run: Path, playback: Playback)
     replay(run, playback, act)
 
 
-def test_a_moment_shows_what_was_recorded_at_it(run: Path, playback: Playback) -> None:
+def test_a_moment_shows_the_values_recorded_at_it(run: Path, playback: Playback) -> None:
     first = playback.repeats[0].result
     at_s = 0.5 * (first.started_s + first.ended_s)
 
@@ -110,7 +110,7 @@ def test_revolutions_and_burst_are_those_of_the_moment(run: Path, playback: Play
     assert state.progress.revolutions == pytest.approx(0.5 * burst.revolutions)
 
 
-def test_the_runs_own_line_stands_in_the_table_of_runs(run: Path, playback: Playback) -> None:
+def test_the_runs_own_line_is_in_the_table_of_runs(run: Path, playback: Playback) -> None:
     async def act(app: ReplayApp, press: Press) -> None:
         await press("f5")
         assert "Runs: 1" in screen_text(app) and run.name in screen_text(app)

@@ -54,17 +54,17 @@ async def at_repeats(on: Stage, run: Path) -> None:
     await on.until(lambda: "repeat 4: mu as measured 0.730" in on.text(), "the repeats are read")
 
 
-def test_the_series_of_a_condition_is_what_differs_along_one_axis_alone() -> None:
+def test_the_series_of_a_condition_differs_along_one_axis_alone() -> None:
     assert [row.condition for row in series(STORED, ROW, AXES["load"])] == [1, 2]
     assert [row.condition for row in series(STORED, ROW, AXES["temperature"])] == [1, 3]
 
 
-def test_what_differs_in_camber_is_of_another_series_and_camber_can_be_plotted_against() -> None:
+def test_another_camber_is_another_series_and_camber_can_be_plotted_against() -> None:
     assert 6 not in [row.condition for row in series(STORED, ROW, AXES["load"])]
     assert [one.name for one in STORED.plotted] == ["load", "slip_velocity", "temperature", "sideslip", "camber"]
 
 
-def test_what_is_not_of_the_series_is_a_faint_dot() -> None:
+def test_points_of_other_series_are_faint_dots() -> None:
     assert [point.sign for point in points(STORED, AXES["load"], ROW)] == ["●", "●", "·", "·", "·"]
 
 
@@ -87,7 +87,7 @@ def test_flags_are_shown_whole_and_a_longer_cell_ends_in_an_ellipsis(tmp_path: P
 
 
 @pytest.mark.parametrize("size", [(80, 24), (120, 40)])
-def test_the_end_of_a_run_names_the_key_that_shows_what_it_measured(size: tuple[int, int], tmp_path: Path) -> None:
+def test_the_end_of_a_run_names_the_key_that_shows_its_results(size: tuple[int, int], tmp_path: Path) -> None:
     run = a_run(tmp_path)
 
     async def act(on: Stage) -> None:
@@ -176,7 +176,7 @@ def test_both_uncertainties_stand_above_the_repeats(tmp_path: Path) -> None:
     play(act, tmp_path)
 
 
-def test_the_head_of_the_record_stands_below_the_runs(tmp_path: Path) -> None:
+def test_the_head_of_the_record_is_below_the_runs(tmp_path: Path) -> None:
     run = a_run(tmp_path)
     with RunReader(run) as reader:
         head = reader.record_head()

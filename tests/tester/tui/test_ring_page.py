@@ -50,7 +50,7 @@ def test_angle_speed_and_age_stand_on_the_page(size: str, folder: Path, monkeypa
     play(act, folder, SIZES[size])
 
 
-def test_the_run_under_the_cursor_is_told(folder: Path) -> None:
+def test_the_run_under_the_cursor_is_described(folder: Path) -> None:
     async def act(on: Stage) -> None:
         page = await at_ring(on)
         assert page.chosen is not None and page.chosen.errors == 60
@@ -88,7 +88,7 @@ def test_a_machine_without_a_ring_has_no_such_screen(tmp_path: Path) -> None:
     play(act, tmp_path)
 
 
-def test_no_runs_and_what_is_no_run_are_said(tmp_path: Path) -> None:
+def test_missing_and_invalid_runs_are_reported(tmp_path: Path) -> None:
     (tmp_path / "runs" / "broken").mkdir(parents=True)
     (tmp_path / "runs" / "broken" / "run.db").write_bytes(b"no database")
 

@@ -46,7 +46,7 @@ def test_screens_look_as_they_did(size: str, tmp_path: Path) -> None:
     play(act, tmp_path, SIZES[size])
 
 
-def test_an_accepted_risk_stands_on_every_screen(tmp_path: Path) -> None:
+def test_an_accepted_risk_is_shown_on_every_screen(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         view = replace(a_state(), risk="trial of a new cell: limits.load 480 N is looser than 450 N")
         for name in KEYS:
@@ -67,7 +67,7 @@ def compare(name: str, text: str) -> None:
     assert text + "\n" == file.read_text(encoding="utf-8")
 
 
-def test_without_colour_the_same_text_stands_no_colour_leaves_and_an_alarm_is_still_told_from_text(
+def test_without_colour_the_text_is_the_same_no_colour_is_sent_and_an_alarm_differs_from_text(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("NO_COLOR", "1")

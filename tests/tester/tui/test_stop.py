@@ -59,7 +59,7 @@ def test_stop_works_while_the_terminal_is_too_small(tmp_path: Path) -> None:
     play(act, tmp_path, (20, 5))
 
 
-def test_stop_that_a_service_refuses_to_take_is_said_loudly(tmp_path: Path) -> None:
+def test_a_stop_refused_by_the_service_is_reported_loudly(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         on.fake.refusals["stop"] = "no rig"
         await on.pilot.press("f12")
@@ -69,7 +69,7 @@ def test_stop_that_a_service_refuses_to_take_is_said_loudly(tmp_path: Path) -> N
     play(act, tmp_path)
 
 
-def test_a_view_only_screen_commands_nothing_and_says_what_does(tmp_path: Path) -> None:
+def test_a_view_only_screen_commands_nothing_and_explains_how_to(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_alarm(a_state()))
         await on.pilot.press("f3", "space", "a", "f12")

@@ -50,7 +50,7 @@ class Pressed(StopLine):
     ("key", "pressed"),
     [("f12", [False]), ("ctrl+x", [False]), ("f9", [True]), ("ctrl+f", [True]), ("f2", []), ("x", [])],
 )
-def test_the_keys_of_stop_and_no_others_press_it_and_go_on_to_the_screen(
+def test_only_the_keys_of_stop_press_it_and_they_also_reach_the_screen(
     key: str, pressed: list[bool], tmp_path: Path
 ) -> None:
     line = Pressed(UnixAddress(tmp_path / "s"), "tui")
@@ -79,7 +79,7 @@ def lane(tmp_path: Path) -> Iterator[StopLane]:
     made.close()
 
 
-def test_where_there_is_no_service_it_says_so(tmp_path: Path) -> None:
+def test_a_missing_service_is_reported(tmp_path: Path) -> None:
     line = StopLine(UnixAddress(tmp_path / "none.sock"), "tui")
     line.press()
     sent = line.take()

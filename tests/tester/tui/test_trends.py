@@ -40,12 +40,12 @@ def test_a_setpoint_is_drawn_where_it_was_and_not_over_the_past() -> None:
     assert max(low) < min(high) and abs(len(low) - len(high)) <= 2
 
 
-def test_rig_time_stands_below_the_trend() -> None:
+def test_rig_time_is_below_the_trend() -> None:
     lines = drawn(scene_of([(float(s), 7000.0 + s, 200.0, 200.0) for s in range(600)]))
     assert lines[-1].split() == ["rig", "1:56:40", "2:01:35", "2:06:35"]
 
 
-def test_a_line_is_where_another_run_begins_and_its_time_stands_below() -> None:
+def test_a_line_is_where_another_run_begins_with_its_time_below() -> None:
     rows = [(float(s), 500.0 + s, 200.0, None) for s in range(300)]
     rows += [(300.0 + s, float(s), 100.0, None) for s in range(300)]
     lines = drawn(scene_of(rows))
@@ -59,7 +59,7 @@ def test_a_value_without_a_setpoint_has_none() -> None:
     assert setpoint_column(MACHINE.trend, "surface_c") == "surface_setpoint_c"
 
 
-def test_rig_time_that_goes_on_begins_no_run() -> None:
+def test_continuing_rig_time_begins_no_run() -> None:
     bins = Bins(2, None, 100, 0)
     for s in range(0, int(WINDOW_S), 5):
         bins.take((float(s), float(s), 1.0))

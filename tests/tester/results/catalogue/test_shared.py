@@ -119,6 +119,6 @@ def test_tables_of_another_version_are_refused_with_the_way_out(tmp_path: Path) 
         open_catalogue(tmp_path / "runs", f"sqlite:///{tmp_path / 'shared.db'}")
 
 
-def test_a_catalogue_that_is_not_there_says_so(tmp_path: Path) -> None:
+def test_a_missing_catalogue_is_reported(tmp_path: Path) -> None:
     with pytest.raises(CatalogueError, match="cannot be used"):
         open_catalogue(tmp_path, f"sqlite:///{tmp_path / 'no' / 'folder' / 'x.db'}")

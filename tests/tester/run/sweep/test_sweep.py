@@ -98,7 +98,7 @@ def test_a_real_rig_is_refused(tmp_path: Path) -> None:
         sweep_of(tmp_path, rig=str(tmp_path / "real.yaml"))
 
 
-def test_the_folder_says_what_was_swept(tmp_path: Path) -> None:
+def test_the_folder_records_the_swept_axes(tmp_path: Path) -> None:
     sweep = sweep_of(tmp_path, "sim.noise=0,1", seeds=3, first_seed=7)
     folder, code = carry_out(sweep, at_once(lambda task: result(task.case, row(), point=task.point)), Heard())
     assert code == 0 and (folder / "recipe.yaml").read_text(encoding="utf-8") == QUICK
@@ -126,7 +126,7 @@ def test_a_run_that_raises_is_a_row_with_the_reason(tmp_path: Path) -> None:
     assert second["outcome"] == "done" and len(rows_of(folder, "conditions.csv")) == 1
 
 
-def test_an_interrupt_keeps_what_is_there_in_order(tmp_path: Path) -> None:
+def test_an_interrupt_keeps_the_results_so_far_in_order(tmp_path: Path) -> None:
     heard = Heard(enough=3)
     folder, code = carry_out(sweep_of(tmp_path, seeds=5), at_once(lambda task: result(task.case, row())), heard)
     assert code == 130 and len(heard.cases) == 3
@@ -134,7 +134,7 @@ def test_an_interrupt_keeps_what_is_there_in_order(tmp_path: Path) -> None:
     assert rows_of(folder, "summary.csv")[0]["runs"] == "3" and rows_of(folder, "totals.csv")[0]["done"] == "3"
 
 
-def test_a_case_gives_what_tester_run_gives_in_whatever_process(tmp_path: Path) -> None:
+def test_a_case_gives_the_results_of_tester_run_in_any_process(tmp_path: Path) -> None:
     sweep = sweep_of(tmp_path, *QUIET, seeds=1)
     found = run_case(sweep.tasks[0])
     (one,) = found.rows

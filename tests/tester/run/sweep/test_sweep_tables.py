@@ -60,7 +60,7 @@ def test_points_are_summed_up_by_themselves_in_their_order() -> None:
     assert [(r["sim.noise"], r["runs"], r["mu_mean"]) for r in found] == [("0", 2, pytest.approx(0.75)), ("1", 1, 0.6)]
 
 
-def test_totals_count_outcomes_rows_and_what_is_missing() -> None:
+def test_totals_count_outcomes_rows_and_missing_values() -> None:
     results = [
         result(1, row(1), row(2)),
         result(2, row(1), row(2, status="insufficient")),

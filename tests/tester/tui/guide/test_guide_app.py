@@ -131,14 +131,14 @@ def test_stop_needs_no_screen_that_draws(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("key", "command"), [("f12", "stop"), ("ctrl+x", "stop"), ("f9", "fast stop")])
-def test_stop_is_taken_where_the_terminal_is_read_before_the_screen_hears_of_it(key: str, command: str) -> None:
+def test_stop_is_taken_where_the_terminal_is_read_before_the_screen_gets_it(key: str, command: str) -> None:
     person = ScreenPerson(time_stands=True)
     driver: Driver = stopping(Silent, person)()  # type: ignore[call-arg]
     driver.process_message(Key(key, None))
     assert person.commands() == [command] and person.commands() == []
 
 
-def test_what_is_no_answer_is_refused_in_words_and_reaches_nobody(tmp_path: Path) -> None:
+def test_an_invalid_answer_is_refused_in_words_and_not_passed_on(tmp_path: Path) -> None:
     stage = TwinStage(tmp_path)
 
     async def act(on: TwinStage) -> None:
@@ -160,7 +160,7 @@ def test_what_is_no_answer_is_refused_in_words_and_reaches_nobody(tmp_path: Path
     assert not any("23 N" in text for text in stage.guide.person.messages)
 
 
-def test_nothing_moves_by_space_while_a_question_stands_and_it_is_said(tmp_path: Path) -> None:
+def test_nothing_moves_by_space_while_a_question_is_open_and_a_message_appears(tmp_path: Path) -> None:
     stage = TwinStage(tmp_path)
 
     async def act(on: TwinStage) -> None:
@@ -172,7 +172,7 @@ def test_nothing_moves_by_space_while_a_question_stands_and_it_is_said(tmp_path:
     stage.play(act)
 
 
-def test_who_leaves_in_a_step_stops_it_first(tmp_path: Path) -> None:
+def test_leaving_in_a_step_stops_it_first(tmp_path: Path) -> None:
     stage = TwinStage(tmp_path)
 
     async def act(on: TwinStage) -> None:
@@ -186,7 +186,7 @@ def test_who_leaves_in_a_step_stops_it_first(tmp_path: Path) -> None:
     assert stage.guide.outcome is not None and stage.guide.outcome.ended is Ended.STOPPED
 
 
-def test_a_refused_step_says_what_to_set_in_full(tmp_path: Path) -> None:
+def test_a_refused_step_shows_its_remedy_in_full(tmp_path: Path) -> None:
     stage = TwinStage(tmp_path)
 
     async def act(on: TwinStage) -> None:
@@ -201,7 +201,7 @@ def test_a_refused_step_says_what_to_set_in_full(tmp_path: Path) -> None:
     assert stage.guide.outcome is not None and stage.guide.outcome.ended is Ended.REFUSED
 
 
-def test_a_rig_file_that_was_spoiled_meanwhile_is_said_with_its_line_and_tried_again(tmp_path: Path) -> None:
+def test_a_rig_file_broken_meanwhile_is_reported_with_its_line_and_tried_again(tmp_path: Path) -> None:
     stage = TwinStage(tmp_path)
     good = stage.guide._load
 
