@@ -32,7 +32,7 @@ from tester.kinds.specimen_on_track.recipe.part import PART as TRACK
 from tester.kinds.wheel_on_belt.recipe.part import PART as WHEEL
 
 
-class Told(Tree):
+class CostedTree(Tree):
     """A tree whose runs take the times listed for its name; keeps the options of the runs."""
 
     costs: ClassVar[dict[str, Cost]] = {}
@@ -44,9 +44,9 @@ class Told(Tree):
 
 
 def trees(before: Cost, now: Cost, folder: Path = ROOT) -> tuple[Tree, Tree]:
-    Told.costs = {"before": before, "now": now}
-    Told.options = []
-    return Told("before", folder), Told("now", folder)
+    CostedTree.costs = {"before": before, "now": now}
+    CostedTree.options = []
+    return CostedTree("before", folder), CostedTree("now", folder)
 
 
 def cost(cpu_s: float, wall_s: float = 1.0, memory_mb: float = 100.0, rig_s: float = 1000.0) -> Cost:
@@ -91,7 +91,7 @@ def test_table2_is_judged_by_its_processor_time_or_by_its_wall_time(tmp_path: Pa
     judged = {figure.name: figure.verdict for figure in found if figure.limit is not None}
     time = Verdict.MISSED if wall else Verdict.HOLDS
     assert list(judged.values()) == [time, Verdict.HOLDS]
-    assert set(Told.options) == {("--jobs", "2")}
+    assert set(CostedTree.options) == {("--jobs", "2")}
 
 
 def test_more_memory_than_before_is_a_miss(tmp_path: Path) -> None:

@@ -25,7 +25,7 @@ def test_a_missing_index_takes_its_sub_indices_along() -> None:
     assert [profile.lacks(key) for key in ((0x60FE, 1), (0x1400, 5), (0x1400, 1))] == [True, True, False]
 
 
-@pytest.mark.parametrize(("text", "said"), [
+@pytest.mark.parametrize(("text", "message"), [
     ("title = 1\n", "title: must be a text, not 1"),
     ('title = "x"\n', "checked: is missing"),
     (HEAD + "speed = 1\n", "speed: is not a key of such a profile"),
@@ -44,10 +44,10 @@ def test_a_missing_index_takes_its_sub_indices_along() -> None:
     (HEAD + "[objects.options]\n6072 = 9999\n", "6072 = 9999 (a profile may choose no value)"),
     ("title = ", "x.toml:"),
 ])
-def test_a_wrong_profile_names_file_and_key(text: str, said: str) -> None:
+def test_a_wrong_profile_names_file_and_key(text: str, message: str) -> None:
     with pytest.raises(ProfileError) as error:
         read_drive_profile("x", text)
-    assert str(error.value).startswith("x.toml") and said in str(error.value)
+    assert str(error.value).startswith("x.toml") and message in str(error.value)
 
 
 def test_an_unknown_profile_names_those_there_are() -> None:
@@ -85,9 +85,9 @@ def test_a_broken_wire_reads_as_an_open_chain_and_guard_whatever_the_bits() -> N
     assert wiring.from_drive(0) & (SAFETY_CHAIN | GUARD) == 0
 
 
-@pytest.mark.parametrize(("bits", "said"), [
+@pytest.mark.parametrize(("bits", "message"), [
     ({"safety_chain": 17}, "need a bit each"), ({"request": 32}, "request: bit 32"),
 ])
-def test_wrong_bits_are_refused(bits: dict[str, int], said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_wrong_bits_are_refused(bits: dict[str, int], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         DigitalWiring(**bits)

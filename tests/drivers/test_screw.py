@@ -42,7 +42,7 @@ def test_a_spring_whose_force_grows_leaves_less_of_a_torque_for_the_wheel() -> N
 
 
 @pytest.mark.parametrize(
-    ("wrong", "told"),
+    ("wrong", "message"),
     [
         ({"lead_mm": 0.0}, "lead"),
         ({"efficiency_least": 0.5}, "efficiency"),
@@ -55,6 +55,6 @@ def test_a_spring_whose_force_grows_leaves_less_of_a_torque_for_the_wheel() -> N
         ({"lead_mm": float("nan")}, "lead_mm"),
     ],
 )
-def test_a_screw_that_cannot_be_is_refused_by_name(wrong: dict[str, float], told: str) -> None:
-    with pytest.raises(ValueError, match=told):
+def test_a_screw_that_cannot_be_is_refused_by_name(wrong: dict[str, float], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         replace(SCREW, **wrong)

@@ -48,16 +48,16 @@ def test_compact_sub_objects_are_unfolded(tmp_path: Path) -> None:
     assert sorted(read_data_sheet(path).objects) == [(0x1003, 0), (0x1003, 1), (0x1003, 2), (0x1003, 3)]
 
 
-@pytest.mark.parametrize(("text", "said"), [
+@pytest.mark.parametrize(("text", "message"), [
     ("no ini", "no data sheet"), ("[FileInfo]\nFileName=x\n", "it has no object"),
     ("[6072]\nDataType=0x0006\nDefaultValue=many\n", "[6072]: 'many' is no number"),
 ])
-def test_a_file_that_is_no_sheet_is_refused(tmp_path: Path, text: str, said: str) -> None:
+def test_a_file_that_is_no_sheet_is_refused(tmp_path: Path, text: str, message: str) -> None:
     path = tmp_path / "bad.eds"
     path.write_text(text)
     with pytest.raises(DataSheetError) as error:
         read_data_sheet(path)
-    assert said in str(error.value)
+    assert message in str(error.value)
 
 
 def test_our_own_sheet_is_fit_for_every_axis(own: DataSheet) -> None:
@@ -66,7 +66,7 @@ def test_our_own_sheet_is_fit_for_every_axis(own: DataSheet) -> None:
         assert (verdict.refused, verdict.without, verdict.noted) == ((), (), ())
 
 
-@pytest.mark.parametrize(("key", "values", "said"), [
+@pytest.mark.parametrize(("key", "values", "message"), [
     ((0x6085, 0), {}, "0x6085:00 (quick stop deceleration): the drive does not have it"),
     ((0x6085, 0), {"access": "ro"}, "0x6085:00 (quick stop deceleration): it cannot be written (access ro)"),
     ((0x6085, 0), {"type": 6}, "0x6085:00 (quick stop deceleration): it has 16 bits, 32 are written"),
@@ -76,9 +76,9 @@ def test_our_own_sheet_is_fit_for_every_axis(own: DataSheet) -> None:
     ((0x6502, 0), {"default": 1}, "0x6502:00 (supported drive modes (pp, pv, hm)): 0x00000001, without PROFILE_VELO"),
     ((0x1016, 1), {"access": "ro"}, "0x1016:01 (consumer heartbeat (node << 16 | ms)): it cannot be written"),
 ])
-def test_a_mismatch_is_named(own: DataSheet, key: tuple[int, int], values: dict[str, object], said: str) -> None:
+def test_a_mismatch_is_named(own: DataSheet, key: tuple[int, int], values: dict[str, object], message: str) -> None:
     refused = check_sheet(wheel(), changed(own, key, **values)).refused
-    assert len(refused) == 1 and refused[0].startswith(said)
+    assert len(refused) == 1 and refused[0].startswith(message)
 
 
 def test_all_mismatches_are_named_at_once(own: DataSheet) -> None:

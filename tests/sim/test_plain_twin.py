@@ -52,7 +52,7 @@ def test_a_machine_is_found_by_a_dotted_name() -> None:
 
 
 @pytest.mark.parametrize(
-    ("name", "said"),
+    ("name", "message"),
     [
         ("sledge", "no simulated machine 'sledge'; known: specimen_on_track, wheel_on_belt"),
         ("nowhere.twin:MACHINE", "no simulated machine 'nowhere.twin:MACHINE': No module named 'nowhere'"),
@@ -60,6 +60,6 @@ def test_a_machine_is_found_by_a_dotted_name() -> None:
         ("sim.machines:names", "sim.machines:names is no simulated machine"),
     ],
 )
-def test_a_name_that_leads_to_no_machine_is_refused_with_the_reason(name: str, said: str) -> None:
-    with pytest.raises(machines.UnknownMachineError, match=said):
+def test_a_name_that_leads_to_no_machine_is_refused_with_the_reason(name: str, message: str) -> None:
+    with pytest.raises(machines.UnknownMachineError, match=message):
         machines.find(name)

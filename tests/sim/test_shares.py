@@ -11,7 +11,7 @@ from sim.faults.shares import OF_READINGS
 from tester.kinds import load_rig
 from tester.run.simulated import spec_of
 from tests.campaigns.faults.recipes import GRID, language_of
-from tests.sim.machines.wheel_on_belt.test_parametric_faults import Nobody, forces, play, sliding
+from tests.sim.machines.wheel_on_belt.test_parametric_faults import FaultlessComputer, forces, play, sliding
 
 SPEC = spec_of(load_rig("sim"))
 
@@ -49,7 +49,7 @@ def test_a_drive_that_measures_too_little_limits_its_torque_as_much_too_late() -
 @pytest.mark.parametrize("fault", ["gain 80 %", "offset -10 %", "drift -60 %/min", "noise 5 %"])
 def test_every_member_is_right_again_when_the_fault_ends(fault: str) -> None:
     rig = deepcopy(sliding())
-    script, scene = FaultScript(), Scene(rig, Nobody())
+    script, scene = FaultScript(), Scene(rig, FaultlessComputer())
     script.add([language_of(GRID[0]).parse(f"t={rig.now_s:.6f} s: common cabinet air {fault} for 1 s")])
     limit_nm = rig.axes["press"].torque_limit_nm
     for _ in range(150):

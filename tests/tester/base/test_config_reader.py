@@ -170,7 +170,7 @@ def test_an_entry_with_a_new_name_is_beside_the_packaged_ones() -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("  sofd: {load: 3 N}", "3: share is missing (expected every key of a new name; known names: soft, hard)"),
         ("  own: {load: 3 N, shar: 1}", '20: unknown key "shar", did you mean share? (expected one of load, share)'),
@@ -179,10 +179,10 @@ def test_an_entry_with_a_new_name_is_beside_the_packaged_ones() -> None:
         ("  3", '3: pairs: "3" is not accepted (expected keys with values)'),
     ],
 )
-def test_an_entry_that_does_not_fit_is_one_problem_at_its_place(text: str, said: str) -> None:
+def test_an_entry_that_does_not_fit_is_one_problem_at_its_place(text: str, message: str) -> None:
     with pytest.raises(InvalidSource) as caught:
         read(Packaged, load_tree(f"pairs:\n{text}", "rig.yaml"), "the builder knows it")
-    assert [str(problem) for problem in caught.value.problems] == [f"rig.yaml:2:{said}"]
+    assert [str(problem) for problem in caught.value.problems] == [f"rig.yaml:2:{message}"]
 
 
 def test_a_merged_entry_survives_writing_and_reading() -> None:

@@ -36,7 +36,7 @@ def as_before() -> Generator[None]:
         signal.signal(number, handler)
 
 
-class Heard:
+class SignalLog:
     def __init__(self) -> None:
         self.numbers: list[int] = []
 
@@ -45,33 +45,33 @@ class Heard:
 
 
 def test_interrupt_and_termination_are_handled() -> None:
-    heard = Heard()
-    with handled(heard):
+    received = SignalLog()
+    with handled(received):
         signal.raise_signal(signal.SIGINT)
         signal.raise_signal(signal.SIGTERM)
-    assert heard.numbers == [signal.SIGINT, signal.SIGTERM]
+    assert received.numbers == [signal.SIGINT, signal.SIGTERM]
 
 
 @posix
 def test_a_hang_up_is_handled() -> None:
-    heard = Heard()
-    with handled(heard):
+    received = SignalLog()
+    with handled(received):
         signal.raise_signal(HANG_UP)
-    assert heard.numbers == [HANG_UP]
+    assert received.numbers == [HANG_UP]
 
 
 @posix
 def test_a_process_that_ignores_hang_ups_keeps_ignoring_them() -> None:
     signal.signal(HANG_UP, signal.SIG_IGN)
-    heard = Heard()
-    with handled(heard):
+    received = SignalLog()
+    with handled(received):
         signal.raise_signal(HANG_UP)
-    assert heard.numbers == [] and HANG_UP not in asking_to_end()
+    assert received.numbers == [] and HANG_UP not in asking_to_end()
 
 
 def test_the_handlers_of_before_come_back() -> None:
     before = [signal.getsignal(number) for number in asking_to_end()]
-    with handled(Heard()):
+    with handled(SignalLog()):
         pass
     assert [signal.getsignal(number) for number in asking_to_end()] == before
 
@@ -93,12 +93,12 @@ def test_a_worker_leaves_interrupts_and_hang_ups_to_its_parent() -> None:
 
 @posix
 def test_quit_is_handled_and_nothing_suspends() -> None:
-    heard = Heard()
-    with handled(heard):
+    received = SignalLog()
+    with handled(received):
         signal.raise_signal(QUIT)
         for number in SUSPENDING:
             signal.raise_signal(number)
-    assert heard.numbers == [QUIT] and len(SUSPENDING) == 3
+    assert received.numbers == [QUIT] and len(SUSPENDING) == 3
 
 
 linux = pytest.mark.skipif(sys.platform != "linux", reason="Linux's scheduling classes")

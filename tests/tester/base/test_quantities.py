@@ -48,7 +48,7 @@ def test_a_value_is_shown_in_its_display_unit() -> None:
 
 
 @pytest.mark.parametrize(
-    ("channels", "roles", "told"),
+    ("channels", "roles", "message"),
     [
         ((FORCE, FORCE, LOAD, WAY), ROLES, "one name"),
         ((FORCE, LOAD), ROLES, "way_mm"),
@@ -56,8 +56,8 @@ def test_a_value_is_shown_in_its_display_unit() -> None:
         ((FORCE, LOAD, WAY), Roles(("force_n",), "load_n", "way_mm", temperature="air_c"), "air_c"),
     ],
 )
-def test_a_table_that_lacks_a_channel_is_refused(channels: tuple[Channel, ...], roles: Roles, told: str) -> None:
-    with pytest.raises(ValueError, match=told):
+def test_a_table_that_lacks_a_channel_is_refused(channels: tuple[Channel, ...], roles: Roles, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         table(*channels, roles=roles)
 
 

@@ -48,16 +48,16 @@ def test_an_axis_of_a_rig_can_be_meant_alone(capsys: pytest.CaptureFixture[str])
     assert [one.split(" (")[0] for one in data["axes"]["wheel"]["refused"]] == ["0x1018:01", "0x1018:02"]
 
 
-@pytest.mark.parametrize(("arguments", "said"), [
+@pytest.mark.parametrize(("arguments", "message"), [
     (["--axis", "wheel"], "--axis needs --rig"),
     (["--rig", "sim", "--axis", "lift"], "the rig has no drive lift (it has wheel, belt"),
     (["--profile", "epos"], "no drive profile 'epos'"),
 ])  # fmt: skip
 def test_a_wrong_question_is_a_usage_error(
-    arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+    arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["bus", "eds", str(EDS_PATH), *arguments]) == 2
-    assert said in capsys.readouterr().err
+    assert message in capsys.readouterr().err
 
 
 def test_a_file_that_is_no_data_sheet_is_a_usage_error(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -146,7 +146,7 @@ def test_the_figure_is_drawn(home: Path, capsys: pytest.CaptureFixture[str], end
     assert Path(f"master.{ending}").stat().st_size > 5000
 
 
-@pytest.mark.parametrize(("arguments", "told"), [
+@pytest.mark.parametrize(("arguments", "message"), [
     (["--format", "csv"], "which file? (expected -o FILE.csv)"),
     (["-o", "master.doc"], "the ending names no format"),
     (["-o", "master.csv", "--format", "png"], "the ending is csv, --format png"),
@@ -154,9 +154,9 @@ def test_the_figure_is_drawn(home: Path, capsys: pytest.CaptureFixture[str], end
     (["--load", "2 kg"], "--load: "),
 ])  # fmt: skip
 def test_meaningless_options_are_usage_errors(
-    home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], told: str
+    home: Path, capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
-    assert told in said(capsys, str(made_track_run(home / "one")), *arguments, code=2)[1]
+    assert message in said(capsys, str(made_track_run(home / "one")), *arguments, code=2)[1]
 
 
 def test_a_compound_without_a_file_has_no_glass_transition(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -71,7 +71,7 @@ def test_a_law_of_figures_takes_those_of_the_simulated_track(capsys: pytest.Capt
 
 
 @pytest.mark.parametrize(
-    ("words", "said"),
+    ("words", "message"),
     [
         ([*POINT, "--law", "persson"], "expected --surface NAME"),
         ([*POINT, "--law", "persson", "--surface", "nowhere"], 'no file of a surface has the name "nowhere"'),
@@ -84,8 +84,10 @@ def test_a_law_of_figures_takes_those_of_the_simulated_track(capsys: pytest.Capt
         (["predict", "--compound", "1#", *POINT[3:], "--components"], "law paper has neither parts nor a table"),
     ],
 )
-def test_impossible_options_are_usage_errors(capsys: pytest.CaptureFixture[str], words: list[str], said: str) -> None:
-    assert said in refused(capsys, *words)
+def test_impossible_options_are_usage_errors(
+    capsys: pytest.CaptureFixture[str], words: list[str], message: str
+) -> None:
+    assert message in refused(capsys, *words)
 
 
 def test_moduli_held_beyond_their_table_are_reported(

@@ -86,17 +86,17 @@ def test_upgrade_of_a_file_that_is_not_there_exits_3(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["--kind", "whel_on_belt"], "did you mean wheel_on_belt?"),
         (["--like", "none"], "no packaged rig of the kind wheel_on_belt is called none (expected sim)"),
     ],
 )
 def test_init_of_a_kind_or_a_packaged_rig_that_is_none_is_a_usage_error(
-    options: list[str], said: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    options: list[str], message: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["rig", "init", str(tmp_path / "rig.yaml"), *options]) == 2
-    assert said in capsys.readouterr().err and not (tmp_path / "rig.yaml").exists()
+    assert message in capsys.readouterr().err and not (tmp_path / "rig.yaml").exists()
 
 
 def test_init_writes_the_kind_into_the_file(tmp_path: Path) -> None:

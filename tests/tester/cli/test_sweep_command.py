@@ -68,7 +68,7 @@ def test_there_are_no_more_processes_than_runs(home: Path, jobs: list[int]) -> N
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["--set", "sim.noise"], "expected key=value"),
         (["--seeds", "0"], "--seeds"),
@@ -76,10 +76,10 @@ def test_there_are_no_more_processes_than_runs(home: Path, jobs: list[int]) -> N
     ],
 )
 def test_a_wrong_call_is_a_usage_error(
-    home: Path, arguments: list[str], said: str, capsys: pytest.CaptureFixture[str]
+    home: Path, arguments: list[str], message: str, capsys: pytest.CaptureFixture[str]
 ) -> None:
     assert invoke(["sweep", "quickstart", *arguments]) == 2
-    assert said in capsys.readouterr().err and not (home / "sweeps").exists()
+    assert message in capsys.readouterr().err and not (home / "sweeps").exists()
 
 
 def test_a_recipe_that_does_not_exist_is_a_usage_error(home: Path, capsys: pytest.CaptureFixture[str]) -> None:

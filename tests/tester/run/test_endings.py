@@ -44,7 +44,7 @@ def test_a_run_without_a_begun_part_is_stopped() -> None:
     assert ending_of([], 2, StopLevel.TERMINATED).outcome is STOPPED
 
 
-class Told:
+class StoppedRun:
     """A run that keeps its commands."""
 
     def __init__(self) -> None:
@@ -66,8 +66,8 @@ class Told:
         (StopLevel.INTERRUPTED | StopLevel.FAST, ("interrupted by the operator", True, True)),
     ],
 )
-def test_an_order_of_one_part_is_not_withdrawn_by_another(stop: StopLevel, said: tuple[str, bool, bool]) -> None:
-    run = Told()
+def test_the_strictest_stop_reaches_the_run(stop: StopLevel, said: tuple[str, bool, bool]) -> None:
+    run = StoppedRun()
     stop.tell(run)  # type: ignore[arg-type]
     assert run.said == [said]
 

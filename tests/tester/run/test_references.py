@@ -119,7 +119,7 @@ def test_it_resumes_with_the_reserved_wheel_and_the_same_belt(resumed: tuple[Pat
     assert grip[-1] < grip[0] and grip[-1] == pytest.approx(0.9 ** (last / 100.0), rel=0.01)
 
 
-def test_what_went_on_leaves_and_holds(resumed: tuple[Path, float]) -> None:
+def test_a_resumed_run_exports_and_verifies(resumed: tuple[Path, float]) -> None:
     folder, _ = resumed
     with (folder / "reference.csv").open(encoding="utf-8", newline="") as file:
         rows = list(csv.DictReader(file))

@@ -94,7 +94,7 @@ def test_every_table_of_the_schema_is_known() -> None:
 
 
 @pytest.mark.parametrize("table", TABLES)
-def test_a_table_has_its_stated_columns(table: str) -> None:
+def test_a_table_has_the_columns_that_a_merge_names(table: str) -> None:
     with closing(sqlite3.connect(":memory:", isolation_level=None)) as database:
         migrate(database)
         columns = {row[1] for row in database.execute(f"PRAGMA table_info({table})")}

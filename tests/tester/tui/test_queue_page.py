@@ -103,7 +103,7 @@ def test_enter_alone_adds_it_once_without_a_limit(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("keys", "said", "where"),
+    ("keys", "message", "where"),
     [
         (["o", "backspace", "0", "enter"], "copies: expected a number from 1 to 50", "copies"),
         (["o", "tab", *"2", "enter"], "answer within: ", "within"),
@@ -113,11 +113,13 @@ def test_enter_alone_adds_it_once_without_a_limit(tmp_path: Path) -> None:
         (["u", "enter"], "expected a time of day such as 18:00", "until"),
     ],
 )
-def test_invalid_input_is_named_and_nothing_is_ordered(keys: list[str], said: str, where: str, tmp_path: Path) -> None:
+def test_invalid_input_is_named_and_nothing_is_ordered(
+    keys: list[str], message: str, where: str, tmp_path: Path
+) -> None:
     async def script(on: Stage) -> None:
         await at_queue(on)
         await on.pilot.press(*keys)
-        await on.until(lambda: said in on.text(), "it is said")
+        await on.until(lambda: message in on.text(), "it is said")
         assert on.app.focused is not None and on.app.focused.id == where and not on.fake.orders
 
     play(script, tmp_path)

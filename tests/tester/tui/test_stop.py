@@ -69,7 +69,7 @@ def test_a_stop_refused_by_the_service_is_reported_loudly(tmp_path: Path) -> Non
     play(act, tmp_path)
 
 
-def test_a_view_only_screen_commands_nothing_and_explains_how_to(tmp_path: Path) -> None:
+def test_a_view_only_screen_commands_nothing_and_shows_the_way_to_stop(tmp_path: Path) -> None:
     async def act(on: Stage) -> None:
         await on.show(with_alarm(a_state()))
         await on.pilot.press("f3", "space", "a", "f12")

@@ -13,7 +13,7 @@ from tests.sim.machines.specimen_on_track.test_track_rig import drive, lower, ru
 from tests.sim.machines.specimen_on_track.variants import parameters, wiring
 
 
-class Nobody:
+class FaultlessComputer:
     """A computer without faults."""
 
     def stall(self, seconds: float) -> None:
@@ -40,7 +40,7 @@ def made(variant: str = "grosch") -> TrackRig:
 def play(rig: TrackRig, fault: str, seconds: float = 0.5) -> FaultScript:
     """Let a fault begin now, and time pass."""
     script = FaultScript().add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")])
-    scene = Scene(rig, Nobody())
+    scene = Scene(rig, FaultlessComputer())
     end = rig.now_s + seconds
     while rig.now_s < end - 1e-9:
         script.act(scene, rig.now_s + 1e-6)

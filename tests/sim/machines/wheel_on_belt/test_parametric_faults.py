@@ -30,7 +30,7 @@ UNDONE = [
 """Faults that leave the rig as it was when they end."""
 
 
-class Nobody:
+class FaultlessComputer:
     """A computer without faults."""
 
     def stall(self, seconds: float) -> None: ...
@@ -83,7 +83,7 @@ def under(fault: str, seconds: float = 0.5, *, lifted: bool = False) -> WheelRig
 
 
 def play(rig: WheelRig, fault: str, seconds: float) -> None:
-    script, scene, end_s = FaultScript(), Scene(rig, Nobody()), rig.now_s + seconds
+    script, scene, end_s = FaultScript(), Scene(rig, FaultlessComputer()), rig.now_s + seconds
     script.add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")])
     while rig.now_s < end_s - 1e-9:
         script.act(scene, rig.now_s + 1e-6)
@@ -187,7 +187,10 @@ def test_a_delay_shows_past_readings() -> None:
 @pytest.mark.parametrize("fault", ["load cell lag 1 s", "load cell delay 1 s"])
 def test_a_slow_load_cell_still_shows_a_load_that_has_gone(fault: str) -> None:
     rig = deepcopy(sliding())
-    script, scene = FaultScript().add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")]), Scene(rig, Nobody())
+    script, scene = (
+        FaultScript().add([LANGUAGE.parse(f"t={rig.now_s:.6f} s: {fault}")]),
+        Scene(rig, FaultlessComputer()),
+    )
     script.act(scene, rig.now_s + 1e-6)
     before_n = forces(rig)[2]
     rig.axes["press"].axis.position = 0.0

@@ -66,14 +66,14 @@ def test_a_file_that_was_edited_is_named_and_comments_do_not_count(tmp_path: Pat
     assert "law.yaml was edited after its fit" in doubt
 
 
-@pytest.mark.parametrize(("word", "said"), [("no", "does not describe"), ("unknown", "is unknown")])
-def test_a_law_that_does_not_describe_its_data_is_doubted(tmp_path: Path, word: str, said: str) -> None:
+@pytest.mark.parametrize(("word", "message"), [("no", "does not describe"), ("unknown", "is unknown")])
+def test_a_law_that_does_not_describe_its_data_is_doubted(tmp_path: Path, word: str, message: str) -> None:
     (doubt,) = kept(tmp_path, example_text(describes=word)).doubts
-    assert said in doubt
+    assert message in doubt
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("form: power", "form: persson", "form"),
         ("scatter: 0.03", "scater: 0.03", "did you mean scatter"),
@@ -87,13 +87,13 @@ def test_a_law_that_does_not_describe_its_data_is_doubted(tmp_path: Path, word: 
         ('content: "', 'content: "x', "content"),
     ],
 )
-def test_mistakes_are_refused_at_their_place(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_mistakes_are_refused_at_their_place(tmp_path: Path, old: str, new: str, message: str) -> None:
     text = example_text()
     assert old in text
     with pytest.raises(InvalidSource) as raised:
         kept(tmp_path, text.replace(old, new))
     problems = [str(one) for one in raised.value.problems]
-    assert all("law.yaml:" in one for one in problems) and any(said in one for one in problems), problems
+    assert all("law.yaml:" in one for one in problems) and any(message in one for one in problems), problems
 
 
 def test_a_file_that_is_no_law_is_refused(tmp_path: Path) -> None:

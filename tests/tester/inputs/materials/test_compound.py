@@ -75,7 +75,7 @@ def test_a_name_is_missing(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("moduli", "said"),
+    ("moduli", "message"),
     [
         ("{}", "nothing is given (expected exactly one of table, file, fractional_zener, constant)"),
         (
@@ -92,9 +92,9 @@ def test_a_name_is_missing(tmp_path: Path) -> None:
         ("{file: {name: dma.csv, columns: {Q: x}}}", '"Q" is no quantity of a table of moduli'),
     ],
 )
-def test_moduli_that_cannot_be_are_refused(tmp_path: Path, moduli: str, said: str) -> None:
+def test_moduli_that_cannot_be_are_refused(tmp_path: Path, moduli: str, message: str) -> None:
     problems = refused(tmp_path, f"name: x\nmoduli: {moduli}\n")
-    assert any(said in one and one.startswith("c.yaml:2:") for one in problems), problems
+    assert any(message in one and one.startswith("c.yaml:2:") for one in problems), problems
 
 
 def test_rows_are_judged_at_their_lines(tmp_path: Path) -> None:
@@ -110,7 +110,7 @@ def test_a_row_of_another_length_is_refused(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("columns", "said"),
+    ("columns", "message"),
     [
         ("temperature degC, frequency Hz, E', E'' MPa", '"E\'" has no unit (expected Pa, kPa, MPa or GPa'),
         ("temperature, frequency Hz, E' MPa, E'' MPa", '"temperature" has no unit (expected degC or K'),
@@ -119,9 +119,9 @@ def test_a_row_of_another_length_is_refused(tmp_path: Path) -> None:
         ("temperature degC, colour Hz, E' MPa, E'' MPa", '"colour Hz" is no heading'),
     ],
 )
-def test_incomplete_columns_are_refused(tmp_path: Path, columns: str, said: str) -> None:
+def test_incomplete_columns_are_refused(tmp_path: Path, columns: str, message: str) -> None:
     text = FULL.replace("temperature degC, frequency Hz, E' MPa, E'' MPa", columns)
-    assert any(said in one for one in refused(tmp_path, text))
+    assert any(message in one for one in refused(tmp_path, text))
 
 
 def test_columns_may_stand_in_any_order(tmp_path: Path) -> None:

@@ -30,7 +30,7 @@ def test_a_spectrum_arrives_in_si(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         ("spectrum: {C0: 1e-19 m4, q0: 2e5 1/m, q1: 2e4 1/m, H: 0.8}", "q1, 20000 1/m, is not above q0, 200000 1/m"),
         ("spectrum: {C0: 1e-19 m4, q0: 2e4 1/m, q1: 2e4 1/m, H: 0.8}", "is not above q0"),
@@ -46,9 +46,9 @@ def test_a_spectrum_arrives_in_si(tmp_path: Path) -> None:
         ("scan: {file: x.csv}", 'there is no file "x.csv" beside this one'),
     ],
 )
-def test_impossible_values_are_refused_at_their_line(tmp_path: Path, text: str, said: str) -> None:
+def test_impossible_values_are_refused_at_their_line(tmp_path: Path, text: str, message: str) -> None:
     problems = refused(tmp_path, f"name: x\n{text}\n")
-    assert any(said in one and one.startswith("s.yaml:") for one in problems), problems
+    assert any(message in one and one.startswith("s.yaml:") for one in problems), problems
 
 
 def test_a_table_of_a_spectrum_has_to_rise(tmp_path: Path) -> None:

@@ -196,13 +196,13 @@ def test_a_compound_without_a_file_is_left_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("changed", "told"),
+    ("changed", "message"),
     [("most: 10 degC", "not above least"), ("alpha: -1.5", "expected more than 0"), ("beta: 0 1/K2", "beta")],
 )
-def test_a_law_that_makes_no_sense_is_refused(changed: str, told: str) -> None:
+def test_a_law_that_makes_no_sense_is_refused(changed: str, message: str) -> None:
     key = changed.partition(":")[0]
     old = next(part for part in LAW.strip("}").partition("{")[2].split(", ") if part.startswith(f"{key}:"))
-    with pytest.raises(InvalidSource, match=told):
+    with pytest.raises(InvalidSource, match=message):
         compound(TEXT.replace(old, changed))
 
 

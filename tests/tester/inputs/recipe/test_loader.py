@@ -132,7 +132,7 @@ def test_a_value_of_the_wrong_form_is_reported_with_its_position(old: str, new: 
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "line", "said"),
+    ("old", "new", "line", "message"),
     [
         ("load: [100 N, 200 N]", "load: [100 N, 0.1 kN]", "9:19", "load: 100 N is listed twice"),
         ("slip_velocity: 300 mm/s", "slip_velocity: 790 mm/s", "8:20", "leaves 0.01 m/s for the belt"),
@@ -177,15 +177,19 @@ def test_a_value_of_the_wrong_form_is_reported_with_its_position(old: str, new: 
         ("name: load", "name: load\n    repeats: 2", "8:14", "a value without a flag needs 3 valid repeats"),
     ],
 )
-def test_nonsense_is_reported_with_its_position(old: str, new: str, line: str, said: str) -> None:
+def test_nonsense_is_reported_with_its_position(old: str, new: str, line: str, message: str) -> None:
     (problem,) = refused(with_line(old, new))
     assert problem.startswith(f"r.yaml:{line}: ")
-    assert said in problem
+    assert message in problem
 
 
-@pytest.mark.parametrize(("said", "kept"), [("", {}), ("combine: mean", {}), ("combine: paper", {"combine": "paper"})])
-def test_how_repeats_are_combined_goes_with_the_run_where_it_is_not_the_mean(said: str, kept: dict[str, str]) -> None:
-    read = recipe(with_line("wheel_speed: 0.8 m/s", f"wheel_speed: 0.8 m/s\n  repeats: 3\n  {said}"))
+@pytest.mark.parametrize(
+    ("message", "kept"), [("", {}), ("combine: mean", {}), ("combine: paper", {"combine": "paper"})]
+)
+def test_how_repeats_are_combined_goes_with_the_run_where_it_is_not_the_mean(
+    message: str, kept: dict[str, str]
+) -> None:
+    read = recipe(with_line("wheel_speed: 0.8 m/s", f"wheel_speed: 0.8 m/s\n  repeats: 3\n  {message}"))
     assert metadata_of(read) == kept
 
 
@@ -196,17 +200,17 @@ def test_fewer_repeats_than_three_are_accepted_with_their_own_min_valid() -> Non
 
 
 @pytest.mark.parametrize(
-    ("order", "said"),
+    ("order", "message"),
     [
         ("{within: shuffled}", "within: shuffled needs a seed"),
         ("{within: snake, seed: 1}", "a seed has no effect"),
         ("{temperature: descending}", "(expected 'ascending')"),
     ],
 )
-def test_an_order_that_cannot_be_is_refused(order: str, said: str) -> None:
+def test_an_order_that_cannot_be_is_refused(order: str, message: str) -> None:
     (problem,) = refused(f"{SMALL}order: {order}\n")
     assert problem.startswith("r.yaml:11:")
-    assert said in problem
+    assert message in problem
 
 
 def test_grids_without_measure_are_refused() -> None:

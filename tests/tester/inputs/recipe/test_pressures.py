@@ -63,7 +63,7 @@ def test_pressures_are_written_like_any_axis(written: str, area: str, loads: lis
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         (AREA, "", "r.yaml:7:15: pressure: no area is known to spread a load over (expected contact: {area: 100 mm2}"),
         ("0.2 MPa", "20 N", 'r.yaml:8:25: pressure: "20 N" has the unit of force'),
@@ -74,9 +74,9 @@ def test_pressures_are_written_like_any_axis(written: str, area: str, loads: lis
         ("[100 kPa, 0.2 MPa]", "{from: 1 MPa, to: 1 kPa, step: 1 kPa}", "r.yaml:8:15: pressure: from, 1e+06 Pa"),
     ],
 )
-def test_a_wrong_pressure_is_reported_at_its_place(old: str, new: str, said: str) -> None:
+def test_a_wrong_pressure_is_reported_at_its_place(old: str, new: str, message: str) -> None:
     found = problems(TEXT.replace(old, new))
-    assert any(one.startswith(said) for one in found), found
+    assert any(one.startswith(message) for one in found), found
     assert not any("load is missing" in one for one in found)
 
 
@@ -110,7 +110,7 @@ def test_the_recipes_area_counts_before_the_rigs() -> None:
 
 
 @pytest.mark.parametrize(
-    ("stated", "said"),
+    ("stated", "message"),
     [
         ("contact={area: 50 mm2}", "source is missing"),
         ("contact={area: 50 mm2, source: ' '}", "expected where the area comes from"),
@@ -118,8 +118,8 @@ def test_the_recipes_area_counts_before_the_rigs() -> None:
         ("contact={area: 5 mm, source: die}", "has the unit of length"),
     ],
 )
-def test_an_area_of_a_rig_file_has_a_unit_and_a_source(stated: str, said: str) -> None:
-    with pytest.raises(InvalidSource, match=said):
+def test_an_area_of_a_rig_file_has_a_unit_and_a_source(stated: str, message: str) -> None:
+    with pytest.raises(InvalidSource, match=message):
         load_rig("grosch", [stated])
 
 

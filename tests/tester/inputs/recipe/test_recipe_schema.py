@@ -25,7 +25,7 @@ def test_an_axis_of_choices_takes_one_or_a_list_and_may_be_left_out() -> None:
 
 
 @pytest.mark.parametrize(
-    ("line", "told"),
+    ("line", "message"),
     [
         ("interface: wett", 'interface: "wett" is not accepted, did you mean wet?'),
         ("interface: 3", "interface: "),
@@ -33,7 +33,7 @@ def test_an_axis_of_choices_takes_one_or_a_list_and_may_be_left_out() -> None:
         ("slip_velocity: 1 m/s", 'unknown key "slip_velocity"'),
     ],
 )
-def test_a_value_that_an_axis_refuses_is_reported_with_its_position(line: str, told: str) -> None:
+def test_a_value_that_an_axis_refuses_is_reported_with_its_position(line: str, message: str) -> None:
     given = {"name": "name: a", "track_speed": "track_speed: 1 mm/s", "temperature": "temperature: 20 degC"}
     given[line.partition(":")[0]] = line
     text = "recipe: r\nspecimens: [{compound: a}]\ngrids:\n  - " + "\n    ".join(given.values()) + "\n"
@@ -42,7 +42,7 @@ def test_a_value_that_an_axis_refuses_is_reported_with_its_position(line: str, t
     with pytest.raises(ValidationError) as refused:
         model.model_validate(tree.data)
     problems = [str(one) for one in problems_of(refused.value, tree, model)]
-    assert len(problems) == 1 and told in problems[0], problems
+    assert len(problems) == 1 and message in problems[0], problems
 
 
 def test_a_schema_lists_choices_for_editors() -> None:

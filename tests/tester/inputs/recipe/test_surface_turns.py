@@ -25,7 +25,7 @@ def test_the_conditions_of_a_surface_stay_together_in_the_order_of_the_recipe() 
 
 
 @pytest.mark.parametrize(
-    ("text", "said"),
+    ("text", "message"),
     [
         (BELTS + "abrasive: {name: road}\n", "abrasive: the grids name surfaces (expected one of both)"),
         (
@@ -34,6 +34,6 @@ def test_the_conditions_of_a_surface_stay_together_in_the_order_of_the_recipe() 
         ),
     ],
 )
-def test_surfaces_are_named_in_one_place(text: str, said: str) -> None:
+def test_surfaces_are_named_in_one_place(text: str, message: str) -> None:
     (problem,) = check(text, rig(), PART, "r.yaml")
-    assert str(problem).endswith(said)
+    assert str(problem).endswith(message)

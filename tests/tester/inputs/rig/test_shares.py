@@ -21,7 +21,7 @@ def test_the_devices_of_one_line_are_a_share_that_no_file_lists() -> None:
 
 
 @pytest.mark.parametrize(
-    ("key", "value", "said"),
+    ("key", "value", "message"),
     [
         ("members", "[load_cel, press]", "load_cel is no device and no axis with a drive, did you mean load_cell?"),
         ("members", "[press]", "expected two different members at least"),
@@ -29,7 +29,7 @@ def test_the_devices_of_one_line_are_a_share_that_no_file_lists() -> None:
         ("shared", "water", "shares.force_supply.shared"),
     ],
 )
-def test_a_wrong_share_is_refused(key: str, value: str, said: str) -> None:
+def test_a_wrong_share_is_refused(key: str, value: str, message: str) -> None:
     with pytest.raises(InvalidSource) as refused:
         load_rig("sim", [f"shares.force_supply.{key}={value}"])
-    assert said in str(refused.value)
+    assert message in str(refused.value)

@@ -14,7 +14,7 @@ from tester.kinds.specimen_on_track.interlocks.inputs import TrackInputs
 from tester.kinds.specimen_on_track.interlocks.table import TABLE
 from tester.kinds.specimen_on_track.interlocks.witness import least_stated
 from tester.machine.interlock_table import RigTable
-from tests.sim.machines.specimen_on_track.test_track_faults import Nobody
+from tests.sim.machines.specimen_on_track.test_track_faults import FaultlessComputer
 from tests.tester.kinds.specimen_on_track.bench import DISC, TrackBench
 
 WET = DISC.replace("[dry, wet]", "wet").replace("5 K, soak", "5 K, least_friction: 0.02, soak")
@@ -155,7 +155,7 @@ def test_after_a_repeat_nothing_low_is_expected(wet: TrackBench) -> None:
 )
 def test_a_fault_on_a_film_is_stopped_in_time(wet: TrackBench, fault: str, row: str, within_s: float) -> None:
     script = FaultScript().add([LANGUAGE.parse(f"t={wet.now:.6f} s: {fault}")])
-    scene, due_s = Scene(wet.world, Nobody()), wet.now + within_s
+    scene, due_s = Scene(wet.world, FaultlessComputer()), wet.now + within_s
     while not wet.kept.trips:
         assert wet.now < due_s
         script.act(scene, wet.now + 1e-6)

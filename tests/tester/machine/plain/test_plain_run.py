@@ -176,14 +176,14 @@ def test_a_person_gives_drives_speeds_in_bounded_steps() -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("node_id: 2, digital_io: false", "node_id: 2, digital_io: true", "one drive carries the safety chain"),
         ("cell: {profile", "other: {profile", "cell is missing"),
     ],
 )
-def test_a_rig_file_that_is_no_plain_machine_is_refused(old: str, new: str, said: str) -> None:
-    with pytest.raises(InvalidSource, match=said):
+def test_a_rig_file_that_is_no_plain_machine_is_refused(old: str, new: str, message: str) -> None:
+    with pytest.raises(InvalidSource, match=message):
         bench_rig(RIG.replace(old, new))
 
 

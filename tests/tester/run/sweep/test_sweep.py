@@ -23,7 +23,7 @@ from tests.tester.run.sweep.results import result, row
 QUICK = SHORT.replace("14 rev", "7 rev")
 
 
-class Heard:
+class Audience:
     """An audience that may cancel."""
 
     def __init__(self, enough: int = 0) -> None:
@@ -100,7 +100,7 @@ def test_a_real_rig_is_refused(tmp_path: Path) -> None:
 
 def test_the_folder_records_the_swept_axes(tmp_path: Path) -> None:
     sweep = sweep_of(tmp_path, "sim.noise=0,1", seeds=3, first_seed=7)
-    folder, code = carry_out(sweep, at_once(lambda task: result(task.case, row(), point=task.point)), Heard())
+    folder, code = carry_out(sweep, at_once(lambda task: result(task.case, row(), point=task.point)), Audience())
     assert code == 0 and (folder / "recipe.yaml").read_text(encoding="utf-8") == QUICK
     said = json.loads((folder / "sweep.json").read_text(encoding="utf-8"))
     assert said == {"first_seed": 7, "seeds": 3, "set": {"sim.noise": ["0", "1"]}}
@@ -110,7 +110,7 @@ def test_a_run_that_ends_badly_is_a_row_and_the_sweep_is_incomplete(tmp_path: Pa
     def outcome(task: SweepTask) -> CaseResult:
         return result(task.case, row(), outcome="tripped" if task.seed == 1 else "done")
 
-    folder, code = carry_out(sweep_of(tmp_path, seeds=3), at_once(outcome), Heard())
+    folder, code = carry_out(sweep_of(tmp_path, seeds=3), at_once(outcome), Audience())
     assert code == 6 and [r["outcome"] for r in rows_of(folder, "runs.csv")] == ["done", "tripped", "done"]
 
 
@@ -120,17 +120,17 @@ def test_a_run_that_raises_is_a_row_with_the_reason(tmp_path: Path) -> None:
             raise RuntimeError("out of wheels")
         return result(task.case, row())
 
-    folder, code = carry_out(sweep_of(tmp_path), at_once(outcome), Heard())
+    folder, code = carry_out(sweep_of(tmp_path), at_once(outcome), Audience())
     first, second = rows_of(folder, "runs.csv")
     assert code == 6 and (first["outcome"], first["reason"]) == ("not run", "RuntimeError: out of wheels")
     assert second["outcome"] == "done" and len(rows_of(folder, "conditions.csv")) == 1
 
 
 def test_an_interrupt_keeps_the_results_so_far_in_order(tmp_path: Path) -> None:
-    heard = Heard(enough=3)
-    folder, code = carry_out(sweep_of(tmp_path, seeds=5), at_once(lambda task: result(task.case, row())), heard)
-    assert code == 130 and len(heard.cases) == 3
-    assert [int(r["seed"]) for r in rows_of(folder, "runs.csv")] == sorted(heard.cases)
+    audience = Audience(enough=3)
+    folder, code = carry_out(sweep_of(tmp_path, seeds=5), at_once(lambda task: result(task.case, row())), audience)
+    assert code == 130 and len(audience.cases) == 3
+    assert [int(r["seed"]) for r in rows_of(folder, "runs.csv")] == sorted(audience.cases)
     assert rows_of(folder, "summary.csv")[0]["runs"] == "3" and rows_of(folder, "totals.csv")[0]["done"] == "3"
 
 
@@ -151,9 +151,9 @@ def test_the_order_of_arrival_does_not_show_in_the_files(tmp_path: Path, monkeyp
     def files(name: str) -> dict[str, bytes]:
         (tmp_path / name).mkdir()
         sweep = sweep_of(tmp_path / name, "sim.scatter=0,1", seeds=3)
-        heard = Heard()
-        folder, _ = carry_out(sweep, at_once(lambda task: result(task.case, row(), point=task.point)), heard)
-        arrived.append(heard.cases)
+        audience = Audience()
+        folder, _ = carry_out(sweep, at_once(lambda task: result(task.case, row(), point=task.point)), audience)
+        arrived.append(audience.cases)
         return {path.name: path.read_bytes() for path in folder.iterdir()}
 
     arrived: list[list[int]] = []

@@ -105,16 +105,16 @@ def test_a_hub_that_does_not_cool_is_reported_with_the_question(bench: Bench) ->
 
 
 @pytest.mark.parametrize(
-    ("hub_c", "said"),
+    ("hub_c", "message"),
     [
         (44.9, "brush"),
         (45.0, "brush (HOT: the hub is at 45 degC; with the tool only, keep your hands off)"),
         (57.9, "brush (HOT: the hub is at 58 degC; with the tool only, keep your hands off)"),
     ],
 )
-def test_with_a_tool_a_warm_wheel_is_asked_about_and_called_hot(bench: Bench, hub_c: float, said: str) -> None:
+def test_with_a_tool_a_warm_wheel_is_asked_about_and_called_hot(bench: Bench, hub_c: float, message: str) -> None:
     bench.surface_c = hub_c
-    assert asked(bench, AskAtRest("brush", 58.0)).text == said
+    assert asked(bench, AskAtRest("brush", 58.0)).text == message
     r, demand = bench.ctx.readings, bench.ctx.demand
     assert r.drives_disabled and r.wheel_speed_m_s == r.belt_speed_m_s == 0.0 and not r.contactor_closed
     assert demand.press is Press.LIFT and not demand.enabled and isnan(demand.surface_c)

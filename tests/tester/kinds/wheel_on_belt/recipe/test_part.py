@@ -52,7 +52,7 @@ def test_a_grid_may_state_it() -> None:
 
 
 @pytest.mark.parametrize(
-    ("recipe", "told"),
+    ("recipe", "message"),
     [
         (text("0 mm/s"), "slip_velocity: 0 m/s has no direction to reverse (expected another slip"),
         (text(grid=", sideslip: 30 deg"), "it slides at 0.444 m/s one way and at 0.571 m/s the other way"),
@@ -67,9 +67,9 @@ def test_a_grid_may_state_it() -> None:
          "reversed by both_directions, at a wheel speed of 0.65 m/s leaves less than"),
     ],
 )  # fmt: skip
-def test_a_condition_that_differs_the_other_way_is_refused(recipe: str, told: str) -> None:
+def test_a_condition_that_differs_the_other_way_is_refused(recipe: str, message: str) -> None:
     found = problems(recipe)
-    assert any(told in one for one in found), found
+    assert any(message in one for one in found), found
 
 
 def test_a_slip_that_needs_a_fast_belt_one_way_is_allowed_one_way() -> None:

@@ -67,7 +67,7 @@ def test_a_name_close_to_a_known_one_is_asked_about(folder: Path, capsys: pytest
 
 
 @pytest.mark.parametrize(
-    ("law", "told"),
+    ("law", "message"),
     [
         ("{form: power, figures: {v0: 300}}", 'figures: v0: 300 has no unit (expected a speed such as "0.8 m/s"'),
         ("{form: power, figures: {mu: 1}}", "figures: law power has no mu (expected a, v0, n, n0, m)"),
@@ -76,11 +76,11 @@ def test_a_name_close_to_a_known_one_is_asked_about(folder: Path, capsys: pytest
     ],
 )
 def test_mistakes_in_a_law_are_refused_at_their_line(
-    folder: Path, capsys: pytest.CaptureFixture[str], law: str, told: str
+    folder: Path, capsys: pytest.CaptureFixture[str], law: str, message: str
 ) -> None:
     described(folder, f"name: own\nlaw: {law}\n")
     found = errors(capsys, "materials", "check", "compounds/own.yaml", code=3)
-    assert ":2:" in found and told in found
+    assert ":2:" in found and message in found
 
 
 def test_a_law_without_a_coefficient_somewhere_on_a_wheel_is_refused(
