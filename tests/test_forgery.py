@@ -8,7 +8,7 @@ import pytest
 
 from tester.cli.main import invoke
 from tester.results.verify import verify
-from tests.campaigns.forgery.forge import FORGERIES, Forgery, remake_all, told
+from tests.campaigns.forgery.forge import FORGERIES, Forgery, detected, remake_all
 from tests.campaigns.forgery.run import finished_run
 
 
@@ -38,7 +38,7 @@ BY_ITS_COEFFICIENTS = (
 
 @pytest.mark.parametrize("forgery", FORGERIES, ids=lambda forgery: forgery.name)
 def test_a_forgery_is_reported(runs: tuple[Path, Path], forgery: Forgery, tmp_path: Path) -> None:
-    kept, without, kept_all_anew, _ = told(*runs, forgery, tmp_path)
+    kept, without, kept_all_anew, _ = detected(*runs, forgery, tmp_path)
     assert (kept, without, kept_all_anew) == (True, True, True)
 
 
@@ -47,7 +47,7 @@ def test_the_coefficients_report_it_even_with_all_made_anew(
     runs: tuple[Path, Path], name: str, tmp_path: Path
 ) -> None:
     (forgery,) = (one for one in FORGERIES if one.name == name)
-    assert told(*runs, forgery, tmp_path)[3]
+    assert detected(*runs, forgery, tmp_path)[3]
 
 
 def test_an_earlier_head_is_reported_with_the_later_changes(
