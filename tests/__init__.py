@@ -1,4 +1,4 @@
-"""Tests and campaigns. They ignore the user's settings and run at about noon local time."""
+"""Tests and campaigns. They find no settings of whoever starts them, and show local times in UTC."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pathlib import Path
 os.environ["TESTER_CONFIG_DIR"] = str(Path(__file__).parent / "no-settings")
 """A folder that does not exist: a service would send notices to real addresses."""
 
-if hasattr(time, "tzset"):  # POSIX; elsewhere the hour of the computer holds
-    # The morning's message and a queue's windows come at a local hour, also in the processes of a test.
-    os.environ["TZ"] = f"LAB{time.gmtime().tm_hour - 12:+d}"
+os.environ["TZ"] = "UTC"
+if hasattr(time, "tzset"):  # POSIX
     time.tzset()

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import gc
+import time
+from collections.abc import Iterator
 
 import pytest
 
@@ -22,3 +24,19 @@ def pytest_collection_finish() -> None:
     """Spare the collector the tests themselves: some hundred thousand objects that stay to the end."""
     gc.collect()
     gc.freeze()
+
+
+@pytest.fixture
+def noon(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Move this process and its children to a zone where it is about noon (POSIX; elsewhere the hour stays).
+
+    The morning's message and a queue's windows come at a local hour: a test must not meet them by chance.
+    """
+    if not hasattr(time, "tzset"):
+        yield
+        return
+    with monkeypatch.context() as patch:
+        patch.setenv("TZ", f"LAB{time.gmtime().tm_hour - 12:+d}")
+        time.tzset()
+        yield
+    time.tzset()

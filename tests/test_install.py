@@ -55,7 +55,7 @@ def test_no_cache_and_no_wish_to_compile_is_handed_on(tmp_path: Path, monkeypatc
 @posix
 def test_an_output_is_read_piece_by_piece_with_its_time(tmp_path: Path) -> None:
     pieces: list[tuple[str, float]] = []
-    told = carry_out("echo one; echo two", tmp_path, heard=lambda piece, at_s: pieces.append((piece, at_s)))
+    told = carry_out("echo one; echo two", tmp_path, on_output=lambda piece, at_s: pieces.append((piece, at_s)))
     assert "".join(piece for piece, _ in pieces) == told.text == "one\ntwo\n"
     assert all(0.0 < at_s <= told.wall_s for _, at_s in pieces)
 

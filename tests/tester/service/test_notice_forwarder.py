@@ -17,6 +17,7 @@ from tester.service.notice_forwarder import NoticeForwarder, started
 from tests.tester.notices.relay import MailRelay
 from tests.tester.notices.scene import ANNA, notice
 
+pytestmark = pytest.mark.usefixtures("noon")
 posix = pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
 
 

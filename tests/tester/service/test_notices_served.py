@@ -17,7 +17,10 @@ from tests.tester.kinds.wheel_on_belt.bench import SHORT
 from tests.tester.notices.relay import MailRelay
 from tests.tester.notices.scene import ANNA
 
-pytestmark = pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's")
+pytestmark = [
+    pytest.mark.skipif(os.name != "posix", reason="signals are POSIX's"),
+    pytest.mark.usefixtures("noon"),
+]
 SECRETS = {"mail_password": "pw-7f3c1e", "ntfy_token": "tk-90ab12", "apprise": "json://u:ap-55d0@127.0.0.1:1/"}
 PIECES = ("pw-7f3c1e", "tk-90ab12", "ap-55d0", "env-31d9")
 """Strings that must appear nowhere."""
