@@ -30,10 +30,10 @@ class Rehearsed:
     recipe: str
     by_hand: bool = False
     example: bool = False
+    """Whether its kind comes from the example package; its rig file is then written beside the recipe."""
     times: float = 1.0
     longest_s: float = 600.0
     """Time limit of a run, s."""
-    """Whether its kind comes from the example package; its rig file is then written beside the recipe."""
 
 
 DISC = Rehearsed("pin-on-disc", "pin-on-disc", """\
